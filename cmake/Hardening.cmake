@@ -1,7 +1,7 @@
 # Mistakes in what parses end the process, and are no way into it. The presets of what is shipped have it.
 option(RC10_HARDEN "Fortified libc calls; for what parses, stack protector, checked indices and control-flow protection" OFF)
 # Layers of the tick, not hardened: checked indices were 12 % of its instructions, the stack protector and the marks of
-# control flow 6 % (docs/performance.md). What clients send is checked before it reaches them, in daemon/clients.
+# control flow 6 % (docs/measuring.md). What clients send is checked before it reaches them, in daemon/clients.
 set(rc10_real_time_layers app bus motor module sim daemon)
 set(rc10_hardening "")
 

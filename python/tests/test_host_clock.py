@@ -49,3 +49,12 @@ def test_a_restarted_host_begins_anew() -> None:
     clock = HostClock()
     clock.observe(5000.0, 10.0)
     assert clock.observe(3.0, 20.0) == pytest.approx(20.0)
+
+
+def test_messages_of_a_queue_that_is_never_empty_are_as_old_as_they_are() -> None:
+    clock = HostClock()
+    clock.observe(5000.0, 1000.0)
+    # A callback of 12 ms for each of 200 states a second: each waits for 1.2 s.
+    for turn in range(1000):
+        host_s, local_s = 5000.0 + turn * 0.012, 1001.2 + turn * 0.012
+        assert clock.observe(host_s, local_s, last=False) < local_s - 1.1

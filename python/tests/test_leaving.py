@@ -221,3 +221,16 @@ def test_a_closed_robot_says_so(client: Client) -> None:
     ):
         with pytest.raises(rc10.LinkError, match="'demo' is closed"):
             use()
+
+
+def test_what_it_commanded_and_did_not_enable_ends_at_once_too(
+    daemon: FakeDaemon, link: VirtualLink
+) -> None:
+    with Client(link, "disable") as robot:
+        robot.enable("yaw")
+        robot.command(wheel=rc10.velocity_rpm(120), yaw=rc10.angle_deg(3), validity_ms=1000)
+    drain(link)
+    last = daemon.commands[-1]
+    assert setpoints(last) == {"wheel": (rc10.Mode.VELOCITY, 120)}
+    assert last.validity_ms == 1
+    assert daemon.operations() == ["enable yaw", "disable yaw"]

@@ -267,3 +267,17 @@ def test_a_motor_that_was_disabled_and_enabled_between_two_states_is_not_driven(
         robot.wait_for_state()
     assert move.result().reason == "wheel: ACTIVE -> READY (disabled by 'panel')"
     assert len(daemon.commands) <= sent + 1
+
+
+def test_a_motor_that_was_enabled_anew_while_the_program_stood_is_not_moved(
+    robot: rc10.Robot, daemon: MovingDaemon, link: VirtualLink
+) -> None:
+    robot.wait_for_state()
+    move = robot.move_to("wheel", 720)
+    robot.spin(0.1)
+    daemon.owner = ""  # disabled and enabled by others, and the events are lost
+    link.pass_time(0.9)
+    sent = len(daemon.commands)
+    assert move.result().outcome is MoveOutcome.FAILED
+    robot.spin(0.5)
+    assert len(daemon.commands) == sent

@@ -75,13 +75,19 @@ void BusHealth::update(MonotonicTime now, const Traffic& traffic) noexcept {
   silent_ = now - last_rx_ >= config_.silent_after;
 
   const bool sent = traffic.tx_watched != seen_.tx_watched;
+  // A queue that stays full is a bus that does not carry frames either; one that takes some again is not
+  // full.
+  const bool refused = traffic.tx_refused != seen_.tx_refused;
+  const bool taken = traffic.tx_frames != seen_.tx_frames;
+  if (only_refused_ && taken && !stalled_) echo_pending_ = false;
   const bool echoed = traffic.tx_confirmed != seen_.tx_confirmed;
   // Any echo counts, also of another frame: one lost frame must not stall the bus for ever.
   if (!carrying || traffic.echo_reads == 0 || echoed) {
     echo_pending_ = false;
     stalled_ = false;
-  } else if (sent && !echo_pending_) {
+  } else if ((sent || refused) && !echo_pending_) {
     echo_pending_ = true;
+    only_refused_ = !sent;
     echo_pending_since_ = now;
     echo_pending_ticks_ = 0;
   } else if (echo_pending_ && echo_pending_ticks_ < config_.stalled_ticks) {

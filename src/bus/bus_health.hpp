@@ -33,7 +33,9 @@ class BusHealth {
   /// Events since the last update(), counted by the threads that saw them.
   struct Traffic {
     std::uint64_t rx_frames = 0;     ///< Since start.
-    std::uint64_t tx_watched = 0;    ///< Frames of the watched ids handed to the kernel, since start.
+    std::uint64_t tx_frames = 0;     ///< Accepted by the kernel, since start.
+    std::uint64_t tx_watched = 0;    ///< Those of the watched ids.
+    std::uint64_t tx_refused = 0;    ///< Frames of the watched ids that the kernel refused.
     std::uint64_t tx_confirmed = 0;  ///< Their echoes, since start.
     std::uint64_t echo_reads = 0;    ///< Times that all echoes were read; 0: no echo socket, no stall.
     bool feedback_expected = true;   ///< Motors on this bus talk without being asked.
@@ -68,7 +70,8 @@ class BusHealth {
   std::uint64_t restarts_ = 0;
   Traffic seen_{};
   MonotonicTime last_rx_{};
-  bool echo_pending_ = false;  // a watched frame was sent and no echo has come since
+  bool echo_pending_ = false;  // a watched frame was sent or refused, and no echo has come since
+  bool only_refused_ = false;  // of what is pending
   MonotonicTime echo_pending_since_{};
   int echo_pending_ticks_ = 0;
   bool started_ = false;

@@ -198,8 +198,8 @@ int fdCANbus::sendError() const noexcept { return batch_->error(); }
 void fdCANbus::countSent() noexcept {
   for (const SendBatch::Entry& entry : batch_->entries()) {
     if (tap_ != nullptr) tap_->onSent(entry.frame, entry.sent);
-    // Refused ones too: a queue that stays full is a bus that does not carry frames either.
-    if (std::find(watched_.begin(), watched_.end(), entry.frame.id) != watched_.end()) ++counters_.tx_watched;
+    if (std::find(watched_.begin(), watched_.end(), entry.frame.id) != watched_.end())
+      ++(entry.sent ? counters_.tx_watched : counters_.tx_watched_refused);
     if (!entry.sent) {
       ++counters_.tx_dropped;
       continue;

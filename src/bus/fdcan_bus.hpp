@@ -24,14 +24,15 @@ namespace rc10 {
 class SendBatch;
 
 struct BusCounters {
-  std::uint64_t rx_frames = 0;     ///< Data and remote frames; error frames are counted by health().
-  std::uint64_t rx_unmatched = 0;  ///< Belong to no registered device.
-  std::uint64_t rx_malformed = 0;  ///< A known id with a wrong length or content.
-  std::uint64_t rx_foreign = 0;    ///< With a command id of ours: somebody else sends it.
-  std::uint64_t tx_frames = 0;     ///< Accepted by the kernel.
-  std::uint64_t tx_dropped = 0;    ///< Refused, by the kernel or before; never retried.
-  std::uint64_t tx_held = 0;       ///< Not even tried, because the bus did not carry frames.
-  std::uint64_t tx_watched = 0;    ///< Handed to the kernel with a watched command id.
+  std::uint64_t rx_frames = 0;           ///< Data and remote frames; error frames are counted by health().
+  std::uint64_t rx_unmatched = 0;        ///< Belong to no registered device.
+  std::uint64_t rx_malformed = 0;        ///< A known id with a wrong length or content.
+  std::uint64_t rx_foreign = 0;          ///< With a command id of ours: somebody else sends it.
+  std::uint64_t tx_frames = 0;           ///< Accepted by the kernel.
+  std::uint64_t tx_dropped = 0;          ///< Refused, by the kernel or before; never retried.
+  std::uint64_t tx_held = 0;             ///< Not even tried, because the bus did not carry frames.
+  std::uint64_t tx_watched = 0;          ///< With a watched command id, accepted by the kernel.
+  std::uint64_t tx_watched_refused = 0;  ///< With a watched command id, refused by the kernel.
   /// Unstuffed bits of all frames, for the measured load: those at the nominal bit rate, and apart from
   /// them those of the data phase of FD frames with bit rate switch.
   std::uint64_t rx_bits = 0;

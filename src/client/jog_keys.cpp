@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kSpeedStep = 1.25;
 constexpr double kLeastRpm = 0.5;
+constexpr Duration kPause = std::chrono::milliseconds{100};
 
 std::optional<JogKey> arrow(char last) {
   switch (last) {
@@ -41,7 +42,16 @@ std::vector<JogKey> JogKeys::take(std::string_view bytes) {
   return keys;
 }
 
-void JogSpeed::press(JogKey key, MonotonicTime now) {
+void JogSpeed::press(const std::vector<JogKey>& keys, MonotonicTime now) {
+  const bool paused = looked_ && now - *looked_ > kPause;
+  looked_ = now;
+  for (const auto key : keys) {
+    if (paused && (key == JogKey::kForward || key == JogKey::kBackward)) continue;
+    pressOne(key, now);
+  }
+}
+
+void JogSpeed::pressOne(JogKey key, MonotonicTime now) {
   switch (key) {
     case JogKey::kForward: direction_ = 1; break;
     case JogKey::kBackward: direction_ = -1; break;

@@ -31,18 +31,23 @@ class JogSpeed {
   JogSpeed(double speed_rpm, double most_rpm, Duration dead_man)
       : speed_rpm_(std::min(speed_rpm, most_rpm)), most_rpm_(most_rpm), dead_man_(dead_man) {}
 
-  void press(JogKey key, MonotonicTime now);
+  /// The keys of one look at the terminal, many times a second. After a pause of the program it has those
+  /// that were held during it, which say nothing of the present: they do not turn the motor.
+  void press(const std::vector<JogKey>& keys, MonotonicTime now);
   /// Present target of the motor, rpm.
   [[nodiscard]] double target(MonotonicTime now) const;
   /// The speed of the arrow keys, rpm.
   [[nodiscard]] double speed() const noexcept { return speed_rpm_; }
 
  private:
+  void pressOne(JogKey key, MonotonicTime now);
+
   double speed_rpm_;
   double most_rpm_;
   Duration dead_man_;
   int direction_ = 0;
   std::optional<MonotonicTime> pressed_;
+  std::optional<MonotonicTime> looked_;
 };
 
 }  // namespace rc10::client

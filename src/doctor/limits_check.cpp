@@ -6,11 +6,8 @@
 namespace rc10::doctor {
 namespace {
 
-// rc10d locks 11 MiB with seven motors (docs/performance.md); twice that, and the recording.
+// rc10d locks 14 MiB with seven motors (docs/performance.md); twice that, and the recording.
 constexpr long long kLockedBytes = 64LL << 20;
-
-// systemd/limits.d/rc10d.conf
-constexpr int kPriorityOfDevelopers = 65;
 
 constexpr unsigned kCapIpcLock = 14;  // linux/capability.h
 constexpr unsigned kCapSysNice = 23;
@@ -74,12 +71,10 @@ Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, boo
   const auto limit = *limits.realtime_priority;
   if (limit == LimitFacts::kUnlimited || limit >= priority)
     return pass(what, who + " may have up to " + (limit < 0 ? "any" : std::to_string(limit)));
-  return tooLow(
-      what,
-      who + " may have up to " + std::to_string(limit) + ", rc10d asks for " + std::to_string(priority) +
-          (priority <= kPriorityOfDevelopers ? " (which members of the group rc10-dev get from the package)"
-                                             : ""),
-      limits, "rtprio 90", service);
+  return tooLow(what,
+                who + " may have up to " + std::to_string(limit) + ", rc10d asks for " +
+                    std::to_string(priority) + " (which members of the group rc10-dev get from the package)",
+                limits, "rtprio 90", service);
 }
 
 Finding checkMemoryLimit(const LimitFacts& limits, const std::string& who, bool service) {

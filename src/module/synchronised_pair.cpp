@@ -48,12 +48,12 @@ ModuleSignals pairSignals() {
 
 class SynchronisedPair : public Module_Base {
  public:
-  explicit SynchronisedPair(const OwnValues& own)
+  SynchronisedPair(const OwnValues& own, double limit_rpm)
       : Module_Base(pairSignals()),
         motors_{own.motor("left"), own.motor("right")},
         max_difference_deg_(own.number("max_difference_deg")),
         correction_rpm_per_deg_(own.number("correction_rpm_per_deg")),
-        velocity_limit_rpm_(own.number("velocity_limit_rpm")) {}
+        velocity_limit_rpm_(limit_rpm) {}
 
   void update(const Tick&, ModuleRobot& robot) noexcept override {
     const double left_deg = robot.feedback(motors_[0]).total_angle_deg;
@@ -120,7 +120,13 @@ class SynchronisedPairType : public ModuleType {
         if (auto able = robot.require(mode, own.motor(key), key); !able) return tl::unexpected(able.error());
       }
     }
-    return std::make_unique<SynchronisedPair>(own);
+    // The motors' own limits count as well: beyond, both would turn as fast, whatever lies between them.
+    double limit_rpm = own.number("velocity_limit_rpm");
+    for (const std::string_view key : {"left", "right"}) {
+      const auto own_limit_rpm = static_cast<double>(robot.motors[own.motor(key)].velocity_limit_rpm);
+      if (own_limit_rpm > 0.0) limit_rpm = std::min(limit_rpm, own_limit_rpm);
+    }
+    return std::make_unique<SynchronisedPair>(own, limit_rpm);
   }
 };
 

@@ -30,12 +30,9 @@ class TfminiProtocol final : public I_Protocol {
 
   // Commands for pack_frame(): the first byte of the payload. Settings are lost when the sensor is switched
   // off, unless they are saved.
-  static constexpr std::uint8_t kSetRateHz =
-      0x03;                                       ///< then a u16, low byte first: 1000 / n, or 0 for kMeasure
-  static constexpr std::uint8_t kMeasure = 0x04;  ///< once, at rate 0
-  static constexpr std::uint8_t kSetOutput = 0x05;    ///< then 1: centimetres, 6: millimetres
-  static constexpr std::uint8_t kSetBaud = 0x06;      ///< then a u32
-  static constexpr std::uint8_t kOutputOnOff = 0x07;  ///< then 0 or 1
+  static constexpr std::uint8_t kSetRateHz = 0x03;  ///< then a u16, low byte first: 1000 / n
+  static constexpr std::uint8_t kSetOutput = 0x05;  ///< then 1: centimetres, 6: millimetres
+  static constexpr std::uint8_t kSetBaud = 0x06;    ///< then a u32
   static constexpr std::uint8_t kRestore = 0x10;
   static constexpr std::uint8_t kSave = 0x11;
 

@@ -244,6 +244,12 @@ Subscription LcmLink::subscribeBetween(const std::string& before, const std::str
                       })};
 }
 
+bool LcmLink::moreWaits() const noexcept {
+  if (impl_->lcm == nullptr) return false;
+  pollfd entry{lcm_get_fileno(impl_->lcm), POLLIN, 0};
+  return ::poll(&entry, 1, 0) > 0;
+}
+
 bool LcmLink::inHandler() const noexcept { return std::this_thread::get_id() == impl_->thread.get_id(); }
 
 }  // namespace robot_client

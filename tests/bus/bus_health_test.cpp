@@ -28,6 +28,7 @@ class BusHealthTest : public testing::Test {
       now_ += 1ms;
       if (hears_) ++traffic_.rx_frames;
       if (sends_) ++traffic_.tx_watched;
+      if (sends_ || others_) ++traffic_.tx_frames;
       if (sends_ && echoes_) ++traffic_.tx_confirmed;
       if (reads_) ++traffic_.echo_reads;
       health_.update(now_, traffic_);
@@ -41,6 +42,7 @@ class BusHealthTest : public testing::Test {
   MonotonicTime now_{1000s};
   bool hears_ = true;
   bool sends_ = true;
+  bool others_ = false;  // frames that are not watched, taken by the kernel
   bool echoes_ = true;
   bool reads_ = true;
 };
@@ -241,6 +243,32 @@ TEST_F(BusHealthTest, ASlowCommanderIsStalledToo) {
   EXPECT_EQ(state(), BusState::kActive);
   run(1ms);
   EXPECT_EQ(state(), BusState::kStalled);
+}
+
+TEST_F(BusHealthTest, AQueueThatStaysFullIsAStall) {
+  run(50ms);
+  sends_ = false;
+  ++traffic_.tx_refused;
+  run(6ms);
+  EXPECT_EQ(state(), BusState::kStalled);
+  others_ = true;  // probes of a stalled bus: only an echo ends it
+  run(6ms);
+  EXPECT_EQ(state(), BusState::kStalled);
+}
+
+TEST_F(BusHealthTest, ARefusedFrameOfASlowCommanderIsNoStallWhereOthersAreTakenAgain) {
+  run(50ms);
+  sends_ = false;
+  ++traffic_.tx_refused;  // the queue was full when its turn came; the next is ten ticks away
+  run(2ms);
+  others_ = true;
+  run(8ms);
+  EXPECT_EQ(state(), BusState::kActive);
+  others_ = false;
+  ++traffic_.tx_watched;
+  ++traffic_.tx_frames;
+  run(6ms);
+  EXPECT_EQ(state(), BusState::kStalled) << "taken, and not echoed";
 }
 
 TEST_F(BusHealthTest, FramesLostLongAgoDoNotStallABusThatEchoesAgain) {

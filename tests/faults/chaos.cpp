@@ -158,7 +158,7 @@ void Chaos::tick(std::uint64_t periods) {
   const Duration dt = config_.period() * static_cast<std::int64_t>(periods);
   simulate(dt);
   oracle_->echoed(std::exchange(echoed_, {}));
-  for (std::size_t bus = 0; bus < wires_.size(); ++bus) watched_before_[bus] = sentWatched(bus);
+  for (std::size_t bus = 0; bus < wires_.size(); ++bus) counters_before_[bus] = counters(bus);
   robot_->tick(periods);
   readBuses();
   robot_time_ += dt;
@@ -200,9 +200,12 @@ void Chaos::readBuses() {
   const WakeUp wake{
       .now = robot_->now(), .previous = robot_->now(), .realtime_offset = {}, .previous_offset = {}};
   for (std::size_t bus = 0; bus < wires_.size(); ++bus) {
+    const auto& before = counters_before_[bus];
+    if (counters(bus).tx_frames != before.tx_frames) oracle_->taken(bus);
+    if (counters(bus).tx_watched_refused != before.tx_watched_refused) oracle_->refused(bus);
     if (blocked_.test(bus)) {
       behind_.set(bus);
-      if (sentWatched(bus) != watched_before_[bus]) oracle_->watched(bus);
+      if (counters(bus).tx_watched != counters_before_[bus].tx_watched) oracle_->watched(bus);
       continue;
     }
     std::size_t count = 0;
@@ -220,8 +223,8 @@ void Chaos::readBuses() {
   }
 }
 
-std::uint64_t Chaos::sentWatched(std::size_t bus) const {
-  return robot_->robot().buses()[bus].bus->counters().tx_watched;
+const BusCounters& Chaos::counters(std::size_t bus) const {
+  return robot_->robot().buses()[bus].bus->counters();
 }
 
 bool Chaos::isWatched(std::size_t bus, const CanFrame& frame) const {

@@ -127,7 +127,7 @@ class Chaos {
   void deliver(std::size_t bus, CanFrame frame);
   void readBuses();
   void carry(std::size_t bus, const CanFrame& frame);
-  [[nodiscard]] std::uint64_t sentWatched(std::size_t bus) const;
+  [[nodiscard]] const BusCounters& counters(std::size_t bus) const;
   [[nodiscard]] bool isWatched(std::size_t bus, const CanFrame& frame) const;
   void leaveQueue(std::size_t bus);
   void holdEchoes(std::size_t bus, std::uint64_t ticks, bool on_wire);
@@ -185,11 +185,10 @@ class Chaos {
     std::vector<CanFrame> frames;   ///< They leave when it moves again.
   };
   std::array<Queue, kMaxBuses> queues_{};
-  std::bitset<kMaxBuses> echoed_;  ///< Since the last tick.
-  std::array<std::uint64_t, kMaxBuses>
-      watched_before_{};       ///< Frames whose echoes are watched, before this tick.
-  bool contact_open_ = false;  ///< State of the e-stop input.
-  bool mode_open_ = false;     ///< And of the mode input.
+  std::bitset<kMaxBuses> echoed_;                         ///< Since the last tick.
+  std::array<BusCounters, kMaxBuses> counters_before_{};  ///< Before this tick.
+  bool contact_open_ = false;                             ///< State of the e-stop input.
+  bool mode_open_ = false;                                ///< And of the mode input.
   // Scans, and the part of the link thread in them.
   RobotDescription description_;
   std::optional<ScanDesk> desk_;

@@ -363,11 +363,15 @@ void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<
 void Oracle::followEchoes(const Snapshot& snapshot) {
   for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
     auto& echoes = echoes_[bus];
+    // A queue that takes frames again was full for a moment.
+    if (echoes.of_a_full_queue && taken_.test(bus) && !stalled_.test(bus)) echoes = {};
     if (echoed_.test(bus) || down_.test(bus) || off_.test(bus)) {
       echoes = {};
       stalled_.reset(bus);
     } else if (!echoes.awaited) {
-      echoes.awaited = watched_.test(bus) && !held_.test(bus);  // frames that were held back have none
+      // Frames that were held back have none.
+      echoes.awaited = (watched_.test(bus) || refused_.test(bus)) && !held_.test(bus);
+      echoes.of_a_full_queue = echoes.awaited && !watched_.test(bus);
     } else if (++echoes.ticks == kStalledTicks) {
       stalled_.set(bus);
       echoes.next_probe = now_ + kProbeInterval;
@@ -381,6 +385,8 @@ void Oracle::followEchoes(const Snapshot& snapshot) {
   }
   echoed_.reset();
   watched_.reset();
+  refused_.reset();
+  taken_.reset();
 }
 
 void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {

@@ -51,6 +51,9 @@ class Oracle {
   }
   /// A frame was sent there whose echo shows that the bus carries frames.
   void watched(std::size_t bus) { watched_.set(bus); }
+  /// A watched frame that the kernel refused, and any frame that it took.
+  void refused(std::size_t bus) { refused_.set(bus); }
+  void taken(std::size_t bus) { taken_.set(bus); }
   /// Echoes of frames of these buses have come: the frames reach the wire. Known to the end of this tick.
   void echoed(std::bitset<kMaxBuses> buses) { echoed_ |= buses; }
   /// The e-stop input in this tick.
@@ -334,11 +337,14 @@ class Oracle {
   /// Since frames were sent and no echo came.
   struct Echoes {
     bool awaited = false;
+    bool of_a_full_queue = false;  ///< Nothing that the kernel took is awaited.
     std::uint64_t ticks = 0;
     MonotonicTime next_probe{};
   };
   std::array<Echoes, kMaxBuses> echoes_{};
   std::bitset<kMaxBuses> watched_;  ///< In this tick, as is the next.
+  std::bitset<kMaxBuses> refused_;
+  std::bitset<kMaxBuses> taken_;
   std::bitset<kMaxBuses> echoed_;
   std::bitset<kMaxBuses> stalled_;  ///< As of the end of the last tick.
   std::bitset<kMaxBuses> held_;     ///< Nothing but a probe of a stalled bus may be sent there in this tick.

@@ -67,6 +67,17 @@ TEST_F(SynchronisedPair, AtTheLimitTheOneAheadIsStillSlowed) {
   EXPECT_EQ(target(1), -100.0);
 }
 
+TEST_F(SynchronisedPair, TheMotorsOwnLimitCountsAsWell) {
+  auto faster = settings();
+  faster.own.set("velocity_limit_rpm", 1000.0);
+  module_ = std::move(synchronisedPairType().build(faster, outlineOf(2)).value());  // motors of 400 rpm
+  robot_.motor(0).feedback.total_angle_deg = -6.0;
+  velocity(1000.0);
+  robot_.update(*module_);
+  EXPECT_EQ(target(0), 400.0);
+  EXPECT_EQ(target(1), 394.0);
+}
+
 TEST_F(SynchronisedPair, BothFollowOneAngle) {
   angle(720.0);
   robot_.update(*module_);

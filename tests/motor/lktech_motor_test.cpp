@@ -117,7 +117,28 @@ TEST_F(LKTechMotor, TheWayBetweenTwoAnswersOfATurningShaftIsNoOffset) {
   hear(angleReply(2700));          // 15 ms later
   hear(readingReply(0, 1800, 27 * 65536 / 360));
   motor_->order(FrameKind::kHold);
-  EXPECT_NEAR(readLittleEndian<std::int32_t>(frameOf(tick().at(0)).data, 4), 2700, 10);
+  auto frame = frameOf(tick().at(0));
+  EXPECT_EQ(frame.data[0], 0xA2) << "a place that is told now may be another one";
+  EXPECT_EQ(readLittleEndian<std::int32_t>(frame.data, 4), 0);
+  hear(readingReply(0, 0, 27 * 65536 / 360));
+  hear(angleReply(2700));
+  frame = frameOf(tick().at(0));
+  EXPECT_EQ(frame.data[0], 0xA4);
+  EXPECT_NEAR(readLittleEndian<std::int32_t>(frame.data, 4), 2700, 10);
+}
+
+TEST_F(LKTechMotor, ASmallOffsetIsKnownBeforeItIsToldAPlace) {
+  hear(frameOf("141#9A1E600964000000"));
+  hear(readingReply(0, 12, 0));  // 2 rpm, its encoder at 0
+  hear(angleReply(900));         // and its count at 9 degrees
+  hear(readingReply(0, 12, 0));
+  motor_->order(FrameKind::kHold);
+  EXPECT_EQ(frameOf(tick().at(0)).data[0], 0xA2);
+  hear(readingReply(0, 0, 0));
+  hear(angleReply(900));
+  const auto frame = frameOf(tick().at(0));
+  EXPECT_EQ(frame.data[0], 0xA4);
+  EXPECT_NEAR(readLittleEndian<std::int32_t>(frame.data, 4), 900, 10) << "where it stands";
 }
 
 TEST_F(LKTechMotor, RestsAndPollsWithACurrentOfZero) {

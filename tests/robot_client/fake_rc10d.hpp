@@ -71,21 +71,13 @@ class FakeRc10d {
   /// Waits until a command fulfils `wanted`, the ones before included; false: none came.
   template <typename Wanted>
   bool awaitCommand(Wanted wanted) {
-    std::unique_lock lock(mutex);
-    return changed_.wait_for(lock, kPatience, [&] {
-      for (const auto& command : received) {
-        if (wanted(command)) return true;
-      }
-      return false;
-    });
+    return await([&] { return std::any_of(received.begin(), received.end(), wanted); });
   }
   bool awaitCommands(std::size_t count) {
-    std::unique_lock lock(mutex);
-    return changed_.wait_for(lock, kPatience, [&] { return received.size() >= count; });
+    return await([&] { return received.size() >= count; });
   }
   bool awaitRequests(std::size_t count) {
-    std::unique_lock lock(mutex);
-    return changed_.wait_for(lock, kPatience, [&] { return asked.size() >= count; });
+    return await([&] { return asked.size() >= count; });
   }
 
   [[nodiscard]] std::vector<command_t> commands() {
@@ -109,6 +101,20 @@ class FakeRc10d {
   std::vector<std::string> executed;
 
  private:
+  /// A client that this computer has held up sends nothing before it has heard a state of after that.
+  template <typename Reached>
+  bool await(Reached reached) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    std::unique_lock lock(mutex);
+    while (!changed_.wait_for(lock, std::chrono::milliseconds{200}, reached)) {
+      if (std::chrono::steady_clock::now() >= end) return false;
+      lock.unlock();
+      publishState(std::chrono::seconds{1});
+      lock.lock();
+    }
+    return true;
+  }
+
   static motor_state_t motor(const char* name) {
     motor_state_t motor{};
     motor.name = name;

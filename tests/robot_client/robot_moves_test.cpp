@@ -152,6 +152,24 @@ TEST_F(RobotTest, LeavingMayDisableAndNothingElse) {
   for (const auto& command : rc10d_.commands()) EXPECT_NE(command.setpoints[0].mode, +setpoint_t::MODE_COAST);
 }
 
+TEST_F(RobotTest, LeavingEndsWhatItCommandedAndDoesNotDisable) {
+  for (const bool resends : {true, false}) {
+    auto leaving = options();
+    if (!resends) leaving.resend = 0ms;
+    leaving.at_end = resends ? AtEnd::kDisable : AtEnd::kTimeout;
+    connect(leaving);
+    fakeMotor("wheel").status = motor_state_t::STATUS_ACTIVE;  // by somebody else
+    see(1s);
+    ASSERT_TRUE(robot_->motor("wheel").setTargetRPM(60_rpm));
+    ASSERT_TRUE(robot_->close());
+    ASSERT_TRUE(rc10d_.awaitCommand([](const command_t& command) { return command.validity_ms == 1; }));
+    EXPECT_EQ(rc10d_.commands().back().setpoints[0].mode, +setpoint_t::MODE_VELOCITY);
+    EXPECT_THAT(rc10d_.operations(), IsEmpty());
+    const std::lock_guard lock(rc10d_.mutex);
+    rc10d_.received.clear();
+  }
+}
+
 TEST_F(RobotTest, LeavingMayCoastAndDisable) {
   auto leaving = options();
   leaving.at_end = AtEnd::kCoast;

@@ -9,8 +9,7 @@ _DRIFT = 100e-6
 # A host's clock that went back this far belongs to another boot or another host.
 _RESTART_S = 1.0
 
-# A program reads all that has come in each turn: what is late by this, without a gap, for so long,
-# has waited in no queue.
+# Lateness that no queue explains: without a gap, for so long, with nothing behind it.
 _LATE_S = 0.5
 _GAP_S = 0.5
 _BELIEVED_S = 5.0
@@ -35,8 +34,14 @@ class HostClock:
         self._late_since_s: float | None = None
         self._least_s = 0.0
 
-    def observe(self, host_s: float, local_s: float) -> float:
+    def observe(self, host_s: float, local_s: float, *, last: bool = True) -> float:
         """Takes in a message stamped `host_s` and handled at `local_s`.
+
+        Args:
+            host_s: the daemon's time, in seconds.
+            local_s: this program's time, in seconds.
+            last: no other one waits behind it. Of one in a queue, how late it is says nothing
+                about the clocks.
 
         Returns:
             The message's time on the local clock, in seconds.
@@ -51,6 +56,8 @@ class HostClock:
             self._distance_s = min(distance_s, self._distance_s + _DRIFT * gap_s)
             if distance_s - self._distance_s < _LATE_S or gap_s > _GAP_S:
                 self._late_since_s = None
+            elif not last:
+                pass  # it may have waited
             elif self._late_since_s is None:
                 self._late_since_s, self._least_s = local_s, distance_s
             else:

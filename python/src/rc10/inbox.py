@@ -53,6 +53,7 @@ class Inbox:
         self.on_state: list[Callable[[RobotState], None]] = []
         self._waiting: list[bytes] = []
         self._states_seen = 0
+        self._last = True
         self._channel = f"{robot}.v1."
         link.subscribe(self._channel + "state", self._on_state, STATE_QUEUE)
         link.subscribe(self._channel + "diagnostics", self._on_diagnostics, _DIAGNOSTICS_QUEUE)
@@ -93,7 +94,10 @@ class Inbox:
 
     def _take_waiting(self) -> None:
         waiting, self._waiting = self._waiting, []
-        for data in waiting:
+        # A full queue has dropped the newest: all that is left of it is late.
+        full = self._states_seen >= STATE_QUEUE
+        for number, data in enumerate(waiting, 1):
+            self._last = number == len(waiting) and not full
             self._take(data)
 
     def _take(self, data: bytes) -> None:
@@ -109,7 +113,9 @@ class Inbox:
             listener(state)
 
     def _place_in_time(self, message: robot_state_t) -> RobotState:
-        taken_at_s = self._host_clock.observe(message.mono_us * 1e-6, self._link.now())
+        taken_at_s = self._host_clock.observe(
+            message.mono_us * 1e-6, self._link.now(), last=self._last
+        )
         return RobotState.from_lcm(message, taken_at_s, self._link.now)
 
     def _on_diagnostics(self, data: bytes) -> None:

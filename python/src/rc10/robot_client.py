@@ -19,6 +19,7 @@ from rc10.errors import (
     UnknownMotor,
 )
 from rc10.identity import Identity
+from rc10.in_force import InForce
 from rc10.inbox import Inbox
 from rc10.lcm_types.command_t import command_t
 from rc10.lcm_types.setpoint_t import setpoint_t
@@ -34,7 +35,7 @@ from rc10.state import MotorStatus, RobotStatus
 from rc10.validity import DEFAULT_VALIDITY_MS, check_validity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Set
     from typing import Callable
 
     from rc10.diagnostics import Diagnostics
@@ -62,6 +63,8 @@ SHOWN_S = 2.0
 # Period and validity of a move's target while the program receives.
 RESEND_S = 0.02
 _MOVE_VALIDITY_MS = 100
+# Lateness of a target that shows a pause of the program: a signal, a busy computer.
+_PAUSE_S = 0.1
 # Resolution of a state's stamp.
 _STAMP_S = 1e-6
 # A state younger than this proves that the daemon runs and is heard.
@@ -124,6 +127,7 @@ class RobotClient:
         self._closed = False
         self._moves: dict[str, Move] = {}
         self._resend_s = 0.0
+        self._paused = False  # since then no state has been seen
         self._judged: RobotState | None = None
         self._inbox.on_event = self._on_event
         # To be undone on leaving.
@@ -141,7 +145,7 @@ class RobotClient:
         # Robots that were heard while the first state was waited for.
         self._heard: set[str] = set()
         # The last setpoint of each motor, and until when it acts.
-        self._in_force: dict[str, tuple[Setpoint, float]] = {}
+        self._in_force = InForce()
 
     # ---- what is known -----------------------------------------------------------------------
 
@@ -370,7 +374,7 @@ class RobotClient:
             move.fail("the program has let go of the robot")
         self._moves.clear()
         if self._at_end == "timeout":
-            self._lapse()
+            self._lapse(disabled=set())
             return None
         # The daemon refuses a whole message for one motor that it no longer has.
         state = self._inbox.state
@@ -381,21 +385,18 @@ class RobotClient:
             self._publish_command({name: coast() for name in motors}, validity_ms=0)
         if _ALL in self._enabled:
             return ""
+        if self._at_end == "disable":
+            self._lapse(disabled=self._enabled)
         return ",".join(sorted(self._enabled - gone)) or None
 
-    def _lapse(self) -> None:
+    def _lapse(self, disabled: Set[str]) -> None:
         """Has the targets in force end now, not at the end of their validity.
 
         The same targets, and not COAST: after that the daemon would have nothing to do in their
-        stead.
+        stead. Motors that are disabled do their on_disable instead.
         """
-        now = self._link.now()
-        known = None if self._inbox.state is None else self._inbox.state.motors
-        last = {
-            name: setpoint
-            for name, (setpoint, until) in self._in_force.items()
-            if now < until and (known is None or name in known)
-        }
+        known = self._inbox.state and self._inbox.state.motors
+        last = self._in_force.at(self._link.now(), known, disabled)
         if last:
             self._publish_command(last, validity_ms=1)
 
@@ -441,7 +442,7 @@ class RobotClient:
                 self._told.add(event.text)
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
         if leaves_active(event):  # its last target would end what holds it now
-            self._in_force.pop(event.source, None)
+            self._in_force.ended(event.source)
         for move in self._moves.values():
             move.on_event(event)
 
@@ -474,7 +475,12 @@ class RobotClient:
                 self._moves.pop(name)
         now_s = self._link.now()
         if self._moves and now_s >= self._resend_s:
+            self._paused = self._paused or now_s - self._resend_s > _PAUSE_S
             self._resend_s = now_s + RESEND_S
+            # Only what is known of after the pause tells whether the motors still obey.
+            if self._paused and (state is None or now_s - state.taken_at_s > _PAUSE_S):
+                return
+            self._paused = False
             for name, move in self._moves.items():
                 self._publish_command({name: move.setpoint}, _MOVE_VALIDITY_MS)
 
@@ -488,7 +494,7 @@ class RobotClient:
         message.validity_ms = validity_ms
         message.setpoint_count = len(orders)
         until = self._link.now() + (validity_ms or DEFAULT_VALIDITY_MS) / 1000
-        self._in_force.update({name: (setpoint, until) for name, setpoint in orders.items()})
+        self._in_force.sent(orders, until)
         for name, order in orders.items():
             setpoint = setpoint_t()
             setpoint.motor = name

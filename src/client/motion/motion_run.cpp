@@ -256,7 +256,7 @@ std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {
     if (const auto why = whyNotBegin(now)) abort(*why);
     if (phase_ == Phase::kOver) return std::nullopt;
     due_ = now + kSendPeriod;
-    if (!newest_ || knownMotor() == nullptr) return std::nullopt;
+    if (!caught_up || !newest_ || knownMotor() == nullptr) return std::nullopt;
     start_deg_ = newest_->sample.total_angle_deg;
     if (settings_.mode == ControlMode::kTotalAngle) origin_ = start_deg_;
     if (settings_.mode == ControlMode::kVelocity) start_value_ = finiteOr0(newest_->sample.velocity_rpm);
@@ -274,8 +274,9 @@ std::optional<MotionRun::Order> MotionRun::order(MonotonicTime now) {
     phase_ = Phase::kLettingGo;
     let_go_ = now;
     due_ = now + kUntilLetGo;
-    // One that has lapsed does not come back: on_timeout acts in its stead.
-    if (lost_ || now >= acts_until_) return std::nullopt;
+    // One that has lapsed does not come back: on_timeout acts in its stead. Nor does one whose motor may have
+    // been enabled anew.
+    if (lost_ || !caught_up || now >= acts_until_) return std::nullopt;
     // The last target once more, for an instant: then on_timeout acts, as when the client has died.
     return Order{.target = {.mode = settings_.mode, .value = sent_.back().value}, .validity_ms = 1};
   }

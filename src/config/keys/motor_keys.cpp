@@ -312,7 +312,8 @@ constexpr std::array kMotorKeys{
         .twin = "command_divider",
         .about =
             "Feedback rate set on the drive (C620 and GM6020: RoboMaster Assistant; VESC: VESC Tool), for "
-            "the predicted load and for what counts as stale. Default: the model's own, DJI 1000."},
+            "the predicted load and for what counts as stale. Default: the model's own, DJI 1000. "
+            "At least 200 for DJI, 50 for a VESC with angle: tachometer."},
     Key{.name = "command_divider",
         .kind = kInteger,
         .range = {.min = 1, .max = 100},

@@ -27,7 +27,10 @@ std::vector<std::string_view> phaseClocks() { return {"monotonic", "realtime"}; 
 
 std::vector<std::string_view> receivePolicies() { return {"tick", "thread"}; }
 
-constexpr Range kPriorities{.min = 1, .max = 90};
+// Between "lines", one below the scheduler, and rc10-guard (80), which a tick that spins must not keep from
+// the CPU.
+constexpr Range kSchedulerPriorities{.min = 2, .max = 78};
+constexpr Range kRxPriorities{.min = 3, .max = 79};
 constexpr Range kCpus{.min = 0, .max = 1023};
 
 constexpr std::array kSchedulerKeys{
@@ -40,7 +43,7 @@ constexpr std::array kSchedulerKeys{
                  "divide 1e9 ns evenly: 250, 500, 1000, 2000."},
     Key{.name = "priority",
         .kind = kInteger,
-        .range = kPriorities,
+        .range = kSchedulerPriorities,
         .default_text = "60",
         .about = "SCHED_FIFO priority of the thread that owns the motors. "
                  "Above 50 it precedes threaded interrupts; with timer: timerfd on PREEMPT_RT its own "
@@ -73,7 +76,7 @@ constexpr std::array kSchedulerKeys{
         .range = {.min = 20, .max = 60000},
         .default_text = "100",
         .about = "The robot stops when ticks that take nearly all of the CPU have used so much of its "
-                 "time, before the kernel cuts them into lumps. Above 200 LimitRTTIME of the systemd "
+                 "time, before the kernel cuts them into lumps. Above 250 LimitRTTIME of the systemd "
                  "unit may end rc10d first; above 900 the kernel cuts them."},
     Key{.name = "cpu",
         .kind = kInteger,
@@ -83,7 +86,7 @@ constexpr std::array kSchedulerKeys{
 constexpr std::array kRxKeys{
     Key{.name = "priority",
         .kind = kInteger,
-        .range = kPriorities,
+        .range = kRxPriorities,
         .default_text = "65",
         .about = "SCHED_FIFO priority of the RX thread: serial ports, and with receive: thread CAN. Must be "
                  "above the scheduler's."},

@@ -25,6 +25,7 @@ void Feeds::publishState() {
   if (!sources_.exchange.snapshot.everPublished()) return;  // a robot without motors would be a lie
   const auto& snapshot = sources_.exchange.snapshot.read();
   publication_.fill(state_, snapshot, wallClockUs());
+  publishEvents();  // first: who reads this state has read what happened before it
   connections_.publish(link::kStates, link::seal(state_));
   if (connections_.wanted(link::kStates)) recordAges(snapshot);
   publishModules(snapshot);

@@ -35,10 +35,14 @@ bool MotorGroup::waits(const std::vector<Axis>& axes) const noexcept {
 void MotorGroup::noteLeaving(std::size_t motor, MotorStatus before, MotorEvent event) noexcept {
   switch (event) {
     case MotorEvent::kDisable:
+      left.set(motor);
       disabled.set(motor, required.test(motor));
       disabled_on_request |= required.test(motor);
       break;
-    case MotorEvent::kDisableUnasked: disabled.set(motor, required.test(motor)); break;
+    case MotorEvent::kDisableUnasked:
+      left.set(motor);
+      disabled.set(motor, required.test(motor));
+      break;
     case MotorEvent::kEnableFailed: refused.set(motor, required.test(motor)); break;
     case MotorEvent::kFeedbackLost:
     case MotorEvent::kFault: dropped.set(motor, before == MotorStatus::kActive); break;
@@ -64,6 +68,8 @@ void MotorGroup::forgetLeaving() noexcept {
   refused.reset();
   disable_asked = false;
   first_disable.reset();
+  left.reset();
+  let_go.reset();
 }
 
 }  // namespace rc10

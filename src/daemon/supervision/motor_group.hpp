@@ -45,6 +45,9 @@ struct MotorGroup {
   bool disabled_on_request = false;  ///< Some of `disabled` by one that somebody asked for.
   /// Request that named some of rests_with_it, where the group acts together.
   std::optional<std::uint64_t> first_disable;
+  MotorSet left;  ///< Members that were on and have been disabled.
+  std::optional<std::uint64_t>
+      let_go;  ///< Request that let go of those that rested already: once, by all it names.
   // Until a request changes it.
   MotorSet rests_with_it;   ///< Disabled since another member was.
   MotorSet rearm;           ///< To be enabled again by itself; empty: none.

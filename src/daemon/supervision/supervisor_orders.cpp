@@ -227,12 +227,13 @@ void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick
   const bool once_more =
       anew && tick.now != estop_began_ && (group == nullptr || !group->isFirstDisable(motor, order));
   if (axis.status() == MotorStatus::kReady && once_more) {
-    // Motors that move one thing let go together.
-    if (group != nullptr && group->together) {
-      for (const auto member : group->motors)
-        if (axes_[member].status() == MotorStatus::kReady) axes_[member].disableOnceMore(tick);
-    } else {
+    if (group == nullptr || !group->together) {
       axis.disableOnceMore(tick);
+    } else if (std::exchange(group->let_go, order.id) != order.id) {
+      // Motors that move one thing let go together; for one that this request disables it is the first.
+      for (const auto member : group->motors)
+        if (axes_[member].status() == MotorStatus::kReady && !group->left.test(member))
+          axes_[member].disableOnceMore(tick);
     }
   }
   if (group != nullptr) {

@@ -67,7 +67,9 @@ void BusWatch::updateHealth(std::size_t bus, const Tick& tick) noexcept {
   // Before the echoes that it has seen.
   const auto echo_reads = inbox.echo_reads.load(std::memory_order_acquire);
   health.update(tick.now, {.rx_frames = counters.rx_frames,
+                           .tx_frames = counters.tx_frames,
                            .tx_watched = counters.tx_watched,
+                           .tx_refused = counters.tx_watched_refused,
                            .tx_confirmed = inbox.confirmed.load(std::memory_order_relaxed),
                            .echo_reads = echo_reads,
                            .feedback_expected = entry.feedback_expected});

@@ -156,7 +156,8 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
       const double between_deg =
           std::abs(toDrive(static_cast<double>(feedback_.velocity_rpm))) * kDegPerSPerRpm * kInstantsApartS;
       const double shift_deg = shortestWay(position_deg_, angle_deg, reach_deg);
-      shift_deg_ = std::abs(shift_deg) > std::max(kShiftSeenDeg, between_deg) ? shift_deg : 0.0;
+      shift_known_ = std::abs(shift_deg) > std::max(kShiftSeenDeg, between_deg);
+      shift_deg_ = shift_known_ ? shift_deg : 0.0;
     } else {
       // Within half a turn of its last count it may have been restarted all the same.
       position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
@@ -171,6 +172,7 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
     // A step of the target is none that a reading at the edge makes again and again.
     const double least_deg = shift_deg_ != 0.0 ? kSameAngleDeg / 2.0 : kSameAngleDeg;
     shift_deg_ = std::abs(shift_deg) > least_deg ? shift_deg : 0.0;
+    shift_known_ = true;
   }
   answered(Step::kTurns);
 }
@@ -250,6 +252,8 @@ void LKTech_Motor::followVelocity(double output_rpm) noexcept {
 
 void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
   if (feedback_.samples == 0 || !std::isfinite(total_angle_deg)) return release();
+  // It has turned since it was first heard: told a place now, it might go to another one.
+  if (!shift_known_) return followVelocity(0.0);
   const auto rotor_deg_of = [this](double output_deg) {
     return (drivePositionFor(output_deg) + shift_deg_) * traits().gear_ratio;
   };

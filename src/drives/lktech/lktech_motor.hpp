@@ -83,6 +83,7 @@ class LKTech_Motor final : public SoloMotor {
   std::optional<std::uint16_t> encoder_;
   double position_deg_ = 0.0;  ///< Position of the drive's output, in the drive's own count of turns.
   double shift_deg_ = 0.0;     ///< The drive's multi-turn angle less that.
+  bool shift_known_ = false;   ///< That was seen while it stood, or is too large for anything else.
   bool counted_ = false;       ///< The turns are known, and since then it has not been silent.
   bool was_counted_ = false;   ///< They were before the last silence.
   int zero_angles_ = 0;        ///< Replies in a row with an angle of 0.

@@ -62,6 +62,8 @@ class LcmLink {
   /// come faster than they are handled are dropped after the first hundred.
   [[nodiscard]] Subscription subscribe(const std::string& channel, Handler handler) const;
 
+  /// For a handler: whether another message waits behind the one that it was called with.
+  [[nodiscard]] bool moreWaits() const noexcept;
   /// Whether the caller is a handler. It must not wait for messages, since none would come.
   [[nodiscard]] bool inHandler() const noexcept;
 

@@ -15,10 +15,15 @@ class EstopRepetition {
   [[nodiscard]] std::optional<std::int64_t> number() const noexcept { return number_; }
 
   void sent(std::int64_t number, MonotonicTime now) noexcept {
+    if (number_ != number) first_ = now;
     number_ = number;
     next_ = now + kRepeat;
   }
-  void shown() noexcept { number_.reset(); }
+  /// A state that shows ESTOP. One from before the first sending proves nothing: that one may have been
+  /// cleared.
+  void shown(MonotonicTime taken) noexcept {
+    if (taken >= first_) number_.reset();
+  }
 
   /// Number of the one that is to be sent again now.
   [[nodiscard]] std::optional<std::int64_t> due(MonotonicTime now) const noexcept {
@@ -33,6 +38,7 @@ class EstopRepetition {
   static constexpr Duration kRepeat = std::chrono::milliseconds{20};
 
   std::optional<std::int64_t> number_;
+  MonotonicTime first_{};
   MonotonicTime next_{};
 };
 

@@ -13,6 +13,14 @@ namespace {
 
 // A state that was taken sooner after the target was set may show who held the motor before.
 constexpr Duration kClaimOnItsWay = std::chrono::milliseconds{100};
+// Lateness of a target that shows a pause of the program: a signal, a busy computer.
+constexpr Duration kPause = std::chrono::milliseconds{100};
+
+// One that obeyed all the time has this client's target in force, or on_timeout after it. None of both is
+// left when it was enabled anew.
+[[nodiscard]] bool enabledAnew(const MotorState& motor, const std::string& client) {
+  return motor.owner != client && motor.stop_cause != StopCause::kTimeout;
+}
 
 [[nodiscard]] std::optional<std::string> whyDropped(const RobotState& state, const MotorSetpoint& order,
                                                     const std::string& client, MonotonicTime set_at) {
@@ -34,7 +42,8 @@ constexpr Duration kClaimOnItsWay = std::chrono::milliseconds{100};
 
 void HeldTargets::set(const MotorSetpoints& message, MonotonicTime now, std::int64_t shown_us) {
   alive(now);
-  Message held{{}, now, now + resend_, shown_us};
+  const auto due = resend_ == Duration::zero() ? MonotonicTime::max() : now + resend_;
+  Message held{{}, now, now, due, shown_us};
   for (const auto& order : message) {
     release(order.motor);
     if (order.setpoint.mode != Mode::kCoast) held.setpoints.push_back(order);
@@ -74,19 +83,21 @@ std::vector<MotorSetpoints> HeldTargets::takeDue(MonotonicTime now) {
   std::vector<MotorSetpoints> due;
   for (auto& message : messages_) {
     if (message.due > now) continue;
-    due.push_back(message.setpoints);
+    if (now - message.due > kPause) message.resumed = now;
     // On a grid; after a pause from now on, never in a burst.
     message.due = std::max(message.due + resend_, now + resend_ / 2);
+    if (message.resumed) continue;
+    message.sent = now;
+    due.push_back(message.setpoints);
   }
   return due;
 }
 
-std::vector<MotorSetpoints> HeldTargets::takeAll(MonotonicTime now, Duration validity) {
+std::vector<MotorSetpoints> HeldTargets::takeAll(MonotonicTime now) {
   std::vector<MotorSetpoints> all;
   all.reserve(messages_.size());
   for (auto& message : messages_) {
-    const MonotonicTime sent = message.due - resend_;
-    if (now < sent + validity) all.push_back(std::move(message.setpoints));
+    if (now < message.sent + validity_) all.push_back(std::move(message.setpoints));
   }
   messages_.clear();
   return all;
@@ -94,11 +105,15 @@ std::vector<MotorSetpoints> HeldTargets::takeAll(MonotonicTime now, Duration val
 
 std::vector<HeldTargets::Dropped> HeldTargets::judge(const RobotState& state, const std::string& client) {
   std::vector<Dropped> dropped;
-  for (const auto& message : messages_) {
+  for (auto& message : messages_) {
+    const bool resumes = message.resumed && state.taken >= *message.resumed;
     for (const auto& order : message.setpoints) {
-      if (auto reason = whyDropped(state, order, client, message.set_at))
-        dropped.push_back({order.motor, *reason});
+      auto reason = whyDropped(state, order, client, message.set_at);
+      if (!reason && resumes && enabledAnew(*state.find(order.motor), client))
+        reason = order.motor + " was enabled anew while this program stood still";
+      if (reason) dropped.push_back({order.motor, *reason});
     }
+    if (resumes) message.resumed.reset();
   }
   for (const auto& drop : dropped) release(drop.motor);
   return dropped;

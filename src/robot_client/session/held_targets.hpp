@@ -21,8 +21,10 @@ class HeldTargets {
     std::string reason;
   };
 
-  /// `lapse`: how long a target is held after the program's last sign of life; 0: for ever.
-  HeldTargets(Duration resend, Duration lapse) : resend_(resend), lapse_(lapse) {}
+  /// `resend`: 0: the program sends its targets itself. `validity`: how long one acts. `lapse`: how long it
+  /// is held after the program's last sign of life; 0: for ever.
+  HeldTargets(Duration resend, Duration validity, Duration lapse)
+      : resend_(resend), validity_(validity), lapse_(lapse) {}
 
   /// Holds what has just been sent. Motors leave the message in which they were before; COAST needs no
   /// holding. `shown_us`: RobotState::mono_us of the newest state.
@@ -31,7 +33,7 @@ class HeldTargets {
   void releaseAll() { messages_.clear(); }
   /// Gives up all that is held. Returns, message by message, what is still in force: a target that lapsed
   /// while the program stood would let go of what holds its motor since.
-  [[nodiscard]] std::vector<MotorSetpoints> takeAll(MonotonicTime now, Duration validity);
+  [[nodiscard]] std::vector<MotorSetpoints> takeAll(MonotonicTime now);
   /// The program lives.
   void alive(MonotonicTime now) noexcept { last_life_ = now; }
 
@@ -40,7 +42,8 @@ class HeldTargets {
 
   /// When the next message has to be sent again; none while nothing is held.
   [[nodiscard]] std::optional<MonotonicTime> nextDue() const;
-  /// The messages that are due, counted as sent.
+  /// The messages that are due, counted as sent. After a pause of the program first a state of after it has
+  /// to show that the motors have not been enabled anew meanwhile: events of a pause may be lost.
   [[nodiscard]] std::vector<MotorSetpoints> takeDue(MonotonicTime now);
 
   /// To be called with every state that comes after set(). Drops the motors that cannot obey any more or that
@@ -56,11 +59,14 @@ class HeldTargets {
   struct Message {
     MotorSetpoints setpoints;
     MonotonicTime set_at;
+    MonotonicTime sent;
     MonotonicTime due;
     std::int64_t shown_us = 0;
+    std::optional<MonotonicTime> resumed{};  ///< A pause ended then, and no state of after it has come.
   };
 
   Duration resend_;
+  Duration validity_;
   Duration lapse_;
   MonotonicTime last_life_{};
   std::vector<Message> messages_;

@@ -14,15 +14,14 @@ constexpr int kDriftDivider = 10'000;
 // A host's clock that went back this far belongs to another boot or another host.
 constexpr Duration kRestart = std::chrono::seconds{1};
 
-// A program reads all that has come in each turn: what is late by this, without a gap, for so long, has
-// waited in no queue.
+// Lateness that no queue explains: without a gap, for so long, with nothing behind it.
 constexpr Duration kLate = std::chrono::milliseconds{500};
 constexpr Duration kGap = std::chrono::milliseconds{500};
 constexpr Duration kBelieved = std::chrono::seconds{5};
 
 }  // namespace
 
-MonotonicTime HostClock::observe(Duration host, MonotonicTime local) noexcept {
+MonotonicTime HostClock::observe(Duration host, MonotonicTime local, bool last) noexcept {
   const Duration distance = local.time_since_epoch() - host;
   if (!distance_ || host < last_host_ - kRestart) {
     distance_ = distance;
@@ -31,7 +30,9 @@ MonotonicTime HostClock::observe(Duration host, MonotonicTime local) noexcept {
     distance_ = std::min(distance, *distance_ + (local - last_local_) / kDriftDivider);
     if (distance - *distance_ < kLate || local - last_local_ > kGap)
       late_since_.reset();
-    else if (!late_since_) {
+    else if (!last) {
+      // It may have waited.
+    } else if (!late_since_) {
       late_since_ = local;
       least_ = distance;
     } else if (least_ = std::min(least_, distance); local - *late_since_ >= kBelieved) {

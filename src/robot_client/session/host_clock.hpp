@@ -16,8 +16,9 @@ inline namespace robot_client {
 /// taken anew some seconds after rc10d's clock has fallen behind (its computer slept, its time is corrected).
 class HostClock {
  public:
-  /// Takes in a message stamped `host` and handled at `local`; returns its time on the local clock.
-  MonotonicTime observe(Duration host, MonotonicTime local) noexcept;
+  /// Takes in a message stamped `host` and handled at `local`; returns its time on the local clock. `last`:
+  /// no other one waits behind it. Of one in a queue, how late it is says nothing about the clocks.
+  MonotonicTime observe(Duration host, MonotonicTime local, bool last = true) noexcept;
 
  private:
   std::optional<Duration> distance_;

@@ -19,6 +19,9 @@ class Leaving {
   void enabled(const std::vector<std::string>& motors);
   void disabled(const std::vector<std::string>& motors);
   void forget() { *this = {}; }
+  [[nodiscard]] bool disables(const std::string& motor) const {
+    return enabled_all_ || enabled_.contains(motor);
+  }
 
   // Motors that are not in the state are left out: rc10d refuses a whole message for one that it no longer
   // has.

@@ -14,10 +14,10 @@ constexpr std::int64_t kOvertakenUs = 1'000'000;
 
 }  // namespace
 
-bool NewestState::take(const std::shared_ptr<RobotState>& state, MonotonicTime now) {
+bool NewestState::take(const std::shared_ptr<RobotState>& state, MonotonicTime now, bool last) {
   const auto overtaken_us = state_ ? state_->mono_us - state->mono_us : 0;
   if (0 < overtaken_us && overtaken_us < kOvertakenUs) return false;
-  state->taken = clock_.observe(std::chrono::microseconds{state->mono_us}, now);
+  state->taken = clock_.observe(std::chrono::microseconds{state->mono_us}, now, last);
   state_ = state;
   ++received_;
   return true;

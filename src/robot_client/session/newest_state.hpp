@@ -12,8 +12,8 @@ inline namespace robot_client {
 /// The newest state of a robot, and whether it is new. Pure.
 class NewestState {
  public:
-  /// False: another one overtook it on its way. Sets RobotState::taken.
-  [[nodiscard]] bool take(const std::shared_ptr<RobotState>& state, MonotonicTime now);
+  /// False: another one overtook it on its way. Sets RobotState::taken. `last`: no message waits behind it.
+  [[nodiscard]] bool take(const std::shared_ptr<RobotState>& state, MonotonicTime now, bool last = true);
 
   /// nullptr before the first.
   [[nodiscard]] const std::shared_ptr<const RobotState>& get() const noexcept { return state_; }

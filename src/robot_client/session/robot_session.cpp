@@ -49,7 +49,7 @@ void RobotSession::receiveState(std::span<const std::byte> bytes) {
   News news;
   {
     const Lock lock(core_.mutex);
-    if (!core_.newest.take(state, now)) return;
+    if (!core_.newest.take(state, now, !core_.link.moreWaits())) return;
     // close() may wait for it.
     estop_.onState(*state);
     core_.changed.notify_all();

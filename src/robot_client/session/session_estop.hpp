@@ -20,7 +20,7 @@ class SessionEstop {
 
   // With the mutex held.
   void onState(const RobotState& state) noexcept {
-    if (state.status == RobotStatus::kEstop) repetition_.shown();
+    if (state.status == RobotStatus::kEstop) repetition_.shown(state.taken);
   }
   void sendAgain(MonotonicTime now) {
     if (const auto number = repetition_.due(now)) (void)send(*number, now);

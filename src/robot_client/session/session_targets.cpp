@@ -50,7 +50,7 @@ Result<void> SessionTargets::command(const MotorSetpoints& setpoints) {
     if (done) {
       moves_.supersede(setpoints, news.moves);
       done = publish(setpoints);
-      if (core_.options.resend != milliseconds{0}) held_.set(setpoints, now, shownUs());
+      held_.set(setpoints, now, shownUs());
     }
   }
   core_.wake_sender.notify_all();
@@ -114,6 +114,7 @@ void SessionTargets::release(const std::vector<std::string>& motors) {
 
 void SessionTargets::drop(const std::vector<HeldTargets::Dropped>& dropped, News& news) {
   for (const auto& [motor, reason] : dropped) {
+    if (core_.options.resend == milliseconds{0}) break;  // the program's own loop decides
     news.problems.push_back("target dropped: " + reason);
     moves_.fail(motor, reason, news.moves);
   }
@@ -136,15 +137,20 @@ std::optional<MonotonicTime> SessionTargets::nextDue(MonotonicTime now) const {
 }
 
 void SessionTargets::letGo(MonotonicTime now, News& news) {
-  const auto held = held_.takeAll(now, core_.options.validity);
+  auto held = held_.takeAll(now);
   moves_.failAll("the program has let go of the robot", news.moves);
-  if (core_.options.at_end == AtEnd::kTimeout) {
-    // The same targets, not COAST: rc10d does on_timeout after a target that lapses, nothing after a COAST.
-    for (const auto& message : held) (void)core_.outgoing.command(message, milliseconds{1});
-    core_.leaving.forget();
+  if (core_.options.at_end == AtEnd::kCoast) {
+    const auto coasts = core_.leaving.coasts(core_.newest.get().get());
+    if (!coasts.empty()) (void)publish(coasts);
+    return;
   }
-  const auto coasts = core_.leaving.coasts(core_.newest.get().get());
-  if (core_.options.at_end == AtEnd::kCoast && !coasts.empty()) (void)publish(coasts);
+  if (core_.options.at_end == AtEnd::kTimeout) core_.leaving.forget();
+  // The same targets, not COAST: rc10d does on_timeout after a target that lapses, nothing after a COAST.
+  // Those that are disabled do their on_disable instead.
+  for (auto& message : held) {
+    std::erase_if(message, [this](const auto& order) { return core_.leaving.disables(order.motor); });
+    if (!message.empty()) (void)core_.outgoing.command(message, milliseconds{1});
+  }
 }
 
 }  // namespace robot_client

@@ -41,7 +41,7 @@ class SessionTargets {
   void drop(const std::vector<HeldTargets::Dropped>& dropped, News& news);
 
   SessionCore& core_;
-  HeldTargets held_{core_.options.resend, core_.options.alive_within};
+  HeldTargets held_{core_.options.resend, core_.options.validity, core_.options.alive_within};
   Moves moves_{held_};
 };
 

@@ -34,10 +34,10 @@ constexpr int kOk = 0;
 constexpr int kInterfaceFailed = 1;
 constexpr int kBadUsageOrFile = 2;
 
-// Together 0.2 s at most: a service manager waits for us.
+// Together 0.2 s at most, and 0.1 s before for an rc10d that has been killed and is not gone yet: a service
+// manager waits for us.
 constexpr int kMaxSteps = 200;
 constexpr auto kStep = std::chrono::milliseconds{1};
-// For an rc10d that has been killed and is not gone yet.
 constexpr int kEndingSteps = 100;
 
 constexpr std::string_view kHelp = R"(usage: rc10-stop ROBOT | --file FILE | --all   [--force]
@@ -204,7 +204,7 @@ class Stop {
     if (holder.empty()) return true;
     if (writer && writer->runs()) {
       if (options_.all) return false;  // it looks after its drives, and is none of those we were asked for
-      for (int step = 0; step < kEndingSteps && !holder.empty(); ++step) {
+      for (; ending_steps_ > 0 && !holder.empty(); --ending_steps_) {
         std::this_thread::sleep_for(kStep);
         holder = link::holderOfInterface(interface);
       }
@@ -230,6 +230,7 @@ class Stop {
 
   const Options& options_;
   std::map<std::string, std::vector<CanFrame>> frames_;
+  int ending_steps_ = kEndingSteps;  ///< Shared by all interfaces.
   int status_ = kOk;
 };
 

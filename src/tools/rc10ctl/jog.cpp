@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -52,10 +53,9 @@ ExitCode jog(const Global& global, const JogOptions& options) {
   order.steer = [&](link::Setpoint& setpoint, const link::State&) -> std::optional<std::string> {
     const auto now = std::chrono::steady_clock::now();
     bool closed = false;
-    for (const auto key : keys.take(terminal->typed(closed))) {
-      if (key == client::JogKey::kQuit) closed = true;
-      speed.press(key, now);
-    }
+    const auto typed = keys.take(terminal->typed(closed));
+    closed = closed || std::find(typed.begin(), typed.end(), client::JogKey::kQuit) != typed.end();
+    speed.press(typed, now);
     setpoint.target.value = speed.target(now);
     return closed ? std::optional<std::string>{""} : std::nullopt;
   };

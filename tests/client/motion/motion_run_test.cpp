@@ -372,6 +372,30 @@ TEST(MotionRun, ATargetThatLapsedWhileTheClientStoodIsNotSentOnceMore) {
   }
 }
 
+TEST(MotionRun, AfterAPauseItBeginsWithWhatIsKnownSince) {
+  auto robot = robotFor(stepTo(60.0));
+  robot.run(10ms);  // a state and rows have come, and no order has gone out
+  robot.asleep_until = robot.now() + 1500ms;
+  robot.run(1501ms);
+  EXPECT_EQ(robot.orders, 0) << "its motor may have been stopped, turned and enabled meanwhile";
+  robot.run(100ms);
+  EXPECT_GT(robot.orders, 0);
+}
+
+TEST(MotionRun, AfterAPauseNothingIsSentOnceMore) {
+  auto settings = stepTo(60.0);
+  settings.validity_ms = 1000;
+  auto robot = robotFor(settings);
+  int before = 0;
+  robot.run(10s, [&](Robot& r) {
+    if (r.velocity_rpm < 50.0 || before != 0) return;
+    before = r.orders;
+    r.asleep_until = r.now() + 800ms;  // its last target is still valid
+  });
+  EXPECT_TRUE(robot.test().aborted());
+  EXPECT_EQ(robot.orders, before);
+}
+
 TEST(MotionRun, NoTargetOutlivesAPulseByMoreThan200Ms) {
   auto pulse = stepTo(60.0);
   pulse.excitation.time_s = 0.12;

@@ -88,12 +88,12 @@ TEST(RobotRules, TheReceivingThreadPrecedesTheScheduler) {
       errorsOf(robotAfter("robot: hero\nscheduler: {priority: 70}\nrx: {priority: 70}\n")),
       ElementsAre("hero.yaml:3:16: rx.priority: rx.priority 70 is not above scheduler.priority 70" + why));
   EXPECT_THAT(
-      errorsOf(robotAfter("robot: hero\nscheduler: {priority: 80}\n")),
-      ElementsAre("hero.yaml:2:23: scheduler.priority: rx.priority 65 is not above scheduler.priority 80" +
+      errorsOf(robotAfter("robot: hero\nscheduler: {priority: 75}\n")),
+      ElementsAre("hero.yaml:2:23: scheduler.priority: rx.priority 65 is not above scheduler.priority 75" +
                   why));
-  EXPECT_THAT(errorsOf(robotAfter("robot: hero\nrx: {priority: 91}\nscheduler: {priority: 0}\n")),
-              ElementsAre("hero.yaml:2:16: rx.priority: 91 is above 90; use 1 to 90",
-                          "hero.yaml:3:23: scheduler.priority: 0 is below 1; use 1 to 90"));
+  EXPECT_THAT(errorsOf(robotAfter("robot: hero\nrx: {priority: 80}\nscheduler: {priority: 1}\n")),
+              ElementsAre("hero.yaml:2:16: rx.priority: 80 is above 79; use 3 to 79",
+                          "hero.yaml:3:23: scheduler.priority: 1 is below 2; use 2 to 78"));
 }
 
 TEST(RobotRules, ThreadsAndLcmTakeWhatIsWritten) {

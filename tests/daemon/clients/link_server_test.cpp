@@ -148,6 +148,19 @@ TEST_F(LinkServerTest, ARequestIsAnsweredWhenTheSchedulerHasDoneItAndOnlyToTheOn
   EXPECT_FALSE(other->take<link::Response>());
 }
 
+TEST_F(LinkServerTest, AStateComesAfterTheEventsOfItsTicks) {
+  auto client = join(link::kStates | link::kEvents);
+  for (std::uint64_t tick = 1; tick <= 20; ++tick) {
+    ASSERT_TRUE(exchange.events.push({EventCode::kMotorStatus, Severity::kInfo, 0, 1, 2, monotonicNow()}));
+    publishSnapshot(tick);
+    std::optional<link::State> state;
+    do state = await<link::State>(*client);
+    while (state && state->tick < static_cast<std::int64_t>(tick));
+    ASSERT_TRUE(state);
+    EXPECT_EQ(logged.size(), tick) << "an event is logged when it is sent";
+  }
+}
+
 TEST_F(LinkServerTest, ARefusedRequestIsAnsweredAtOnce) {
   auto client = join();
   ASSERT_TRUE(client->send(linkRequest(5, "dance")));

@@ -349,6 +349,45 @@ TEST_F(TogetherTest, ADisableLetsGoOfAllOrNone) {
   EXPECT_EQ(robot->motor(kRight).acting, Acting::kNothing) << "together";
 }
 
+TEST_F(TogetherTest, TheFirstDisableThatSomebodyAsksForDoesTheOnDisableOfAll) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  config.groups[0].together = true;
+  for (const auto place : {0U, 1U}) {
+    for (auto& motor : config.buses[place].motors)
+      motor.fallback = {.on_timeout = FallbackAction::kHold, .on_disable = FallbackAction::kHold};
+  }
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  const auto both = only(kLeft) | only(kRight);
+  robot->orderFor(both, Operation::kEnable);
+  robot->run(50);
+  robot->carryOut({.operation = Operation::kDisable, .motors = both, .asked = Asked::kUnasked});
+  robot->run(3);
+  for (const auto acting : {Acting::kHold, Acting::kNothing}) {
+    robot->orderFor(both, Operation::kDisable);
+    robot->run(3);
+    EXPECT_EQ(robot->motor(kLeft).acting, acting) << "names both, once";
+    EXPECT_EQ(robot->motor(kRight).acting, acting);
+  }
+}
+
+TEST_F(TogetherTest, AnOptionalMemberThatRestsDoesNotMakeTheFirstDisableOfTheOthersASecondOne) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  config.groups[0].together = true;
+  for (const auto place : {0U, 1U}) {
+    for (auto& motor : config.buses[place].motors) motor.fallback.on_disable = FallbackAction::kHold;
+  }
+  config.buses[1].motors[0].optional = true;
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  robot->orderFor(only(kLeft), Operation::kEnable);
+  robot->run(50);
+  ASSERT_EQ(status(kLeft), MotorStatus::kActive);
+  robot->orderFor(only(kLeft) | only(kRight), Operation::kDisable);
+  robot->run(3);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+}
+
 TEST_F(TogetherTest, NoneIsEnabledWhileOneCannotBe) {
   robot->freezeBus(0, true);
   robot->run(50);

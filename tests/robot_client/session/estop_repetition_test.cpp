@@ -29,7 +29,9 @@ TEST(EstopRepetition, IsDueEveryTwentyMillisecondsUnderItsNumberUntilTheStateSho
     EXPECT_EQ(repetition.due(now), 7);
     repetition.sent(7, now);
   }
-  repetition.shown();
+  repetition.shown(kStart - 1ns);  // of an e-stop before, that has been cleared since
+  EXPECT_EQ(repetition.number(), 7);
+  repetition.shown(kStart + 1ms);
   EXPECT_EQ(repetition.due(now + 1s), std::nullopt);
   EXPECT_EQ(repetition.nextDue(), std::nullopt);
 }

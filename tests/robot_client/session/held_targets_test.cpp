@@ -36,7 +36,7 @@ MotorSetpoints turn(const std::string& motor, Rpm velocity) {
 }
 
 TEST(HeldTargets, AreSentAgainOnAGrid) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
   EXPECT_THAT(held.takeDue(kStart + 19ms), IsEmpty());
   EXPECT_EQ(held.nextDue(), kStart + 20ms);
@@ -44,15 +44,49 @@ TEST(HeldTargets, AreSentAgainOnAGrid) {
   EXPECT_EQ(held.nextDue(), kStart + 40ms);
 }
 
-TEST(HeldTargets, AreNotMadeUpForAfterAPause) {
-  HeldTargets held(20ms, 0ms);
+TEST(HeldTargets, AreNotMadeUpForWhenLate) {
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
-  EXPECT_EQ(held.takeDue(kStart + 5s).size(), 1U);
-  EXPECT_THAT(held.takeDue(kStart + 5s), IsEmpty());
+  EXPECT_EQ(held.takeDue(kStart + 110ms).size(), 1U);
+  EXPECT_THAT(held.takeDue(kStart + 110ms), IsEmpty());
+}
+
+TEST(HeldTargets, AfterAPauseAStateOfAfterItComesFirst) {
+  HeldTargets held(20ms, 100ms, 0ms);
+  held.set(turn("wheel", 60_rpm), kStart);
+  EXPECT_THAT(held.takeDue(kStart + 900ms), IsEmpty());
+  EXPECT_THAT(held.judge(heroState(kStart + 880ms), "me"), IsEmpty());
+  EXPECT_THAT(held.takeDue(kStart + 920ms), IsEmpty()) << "that state was taken in the pause";
+  // It lapsed in the pause, and on_timeout acts since: nobody stopped the motor.
+  auto state = heroState(kStart + 930ms);
+  state.motors[1].owner = "";
+  state.motors[1].stop_cause = StopCause::kTimeout;
+  EXPECT_THAT(held.judge(state, "me"), IsEmpty());
+  EXPECT_EQ(held.takeDue(kStart + 940ms).size(), 1U);
+}
+
+TEST(HeldTargets, AMotorThatWasEnabledAnewInAPauseIsNotDriven) {
+  HeldTargets held(20ms, 100ms, 0ms);
+  held.set({{"lift", Setpoint::brake()}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
+  EXPECT_THAT(held.takeDue(kStart + 900ms), IsEmpty());
+  auto state = heroState(kStart + 905ms);
+  state.motors[1].owner = "";
+  const auto dropped = held.judge(state, "me");
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_THAT(dropped[0].reason, HasSubstr("wheel was enabled anew while this program stood still"));
+  EXPECT_THAT(held.motors(), ElementsAre("lift"));
+}
+
+TEST(HeldTargets, ThatTheProgramSendsItselfAreNotSentAgain) {
+  HeldTargets held(0ms, 100ms, 0ms);
+  held.set(turn("wheel", 60_rpm), kStart);
+  EXPECT_THAT(held.takeDue(kStart + 1h), IsEmpty());
+  held.set(turn("wheel", 60_rpm), kStart);
+  EXPECT_EQ(held.takeAll(kStart + 99ms).size(), 1U);
 }
 
 TEST(HeldTargets, WhatWasSetTogetherIsSentTogether) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set({{"lift", Setpoint::totalAngle(90_deg)}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
   const auto due = held.takeDue(kStart + 20ms);
   ASSERT_EQ(due.size(), 1U);
@@ -60,7 +94,7 @@ TEST(HeldTargets, WhatWasSetTogetherIsSentTogether) {
 }
 
 TEST(HeldTargets, ANewTargetTakesTheMotorOutOfItsOldMessage) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set({{"lift", Setpoint::totalAngle(90_deg)}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
   held.set(turn("wheel", 30_rpm), kStart + 1ms);
   const auto due = held.takeDue(kStart + 30ms);
@@ -71,7 +105,7 @@ TEST(HeldTargets, ANewTargetTakesTheMotorOutOfItsOldMessage) {
 }
 
 TEST(HeldTargets, CoastEndsHolding) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
   held.set({{"wheel", Setpoint::coast()}}, kStart + 1ms);
   EXPECT_FALSE(held.holds("wheel"));
@@ -79,7 +113,7 @@ TEST(HeldTargets, CoastEndsHolding) {
 }
 
 TEST(HeldTargets, AMotorThatIsNotActiveIsDroppedAndStaysDropped) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
   auto state = heroState(kStart + 200ms);
   state.motors[1].status = MotorStatus::kOffline;
@@ -93,7 +127,7 @@ TEST(HeldTargets, AMotorThatIsNotActiveIsDroppedAndStaysDropped) {
 }
 
 TEST(HeldTargets, AnEstopDropsAll) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set({{"lift", Setpoint::brake()}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
   auto state = heroState(kStart + 200ms);
   state.status = RobotStatus::kEstop;
@@ -101,7 +135,7 @@ TEST(HeldTargets, AnEstopDropsAll) {
 }
 
 TEST(HeldTargets, AMotorThatAnotherClientTookIsDroppedAndTheOthersStay) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set({{"lift", Setpoint::brake()}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
   auto state = heroState(kStart + 200ms);
   state.motors[1].owner = "remote";
@@ -112,7 +146,7 @@ TEST(HeldTargets, AMotorThatAnotherClientTookIsDroppedAndTheOthersStay) {
 }
 
 TEST(HeldTargets, AMotorThatWasJustTakenOverMayStillShowItsOldOwner) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
   auto state = heroState(kStart + 20ms);
   state.motors[1].owner = "planner";
@@ -120,16 +154,16 @@ TEST(HeldTargets, AMotorThatWasJustTakenOverMayStillShowItsOldOwner) {
 }
 
 TEST(HeldTargets, OnesThatLapsedWhileTheProgramStoodAreNotTakenForTheEnd) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
-  EXPECT_EQ(held.takeAll(kStart + 99ms, 100ms).size(), 1U);
+  EXPECT_EQ(held.takeAll(kStart + 99ms).size(), 1U);
   held.set(turn("wheel", 60_rpm), kStart);
-  EXPECT_THAT(held.takeAll(kStart + 1s, 100ms), IsEmpty());
+  EXPECT_THAT(held.takeAll(kStart + 1s), IsEmpty());
   EXPECT_FALSE(held.holds("wheel"));
 }
 
 TEST(HeldTargets, LapseWithoutASignOfLife) {
-  HeldTargets held(20ms, 500ms);
+  HeldTargets held(20ms, 100ms, 500ms);
   held.set(turn("wheel", 60_rpm), kStart);
   held.alive(kStart + 400ms);
   EXPECT_THAT(held.lapse(kStart + 899ms), IsEmpty());
@@ -138,14 +172,14 @@ TEST(HeldTargets, LapseWithoutASignOfLife) {
 }
 
 TEST(HeldTargets, DoNotLapseUnlessAskedTo) {
-  HeldTargets held(20ms, 0ms);
+  HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
   EXPECT_THAT(held.lapse(kStart + 1h), IsEmpty());
 }
 
 TEST(HeldTargets, AMotorThatStoppedBetweenTwoStatesIsDropped) {
   const auto judged = [](const std::string& source, const std::string& text, std::int64_t mono_us) {
-    HeldTargets held(20ms, 0ms);
+    HeldTargets held(20ms, 100ms, 0ms);
     held.set(turn("wheel", 60_rpm), kStart, 5'000);
     return held.judge(Event{.mono_us = mono_us, .code = 100, .source = source, .text = text});
   };

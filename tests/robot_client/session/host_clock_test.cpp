@@ -51,6 +51,16 @@ TEST(HostClock, MessagesOfAQueueThatIsReadInBurstsAreAsOldAsTheyAre) {
   }
 }
 
+TEST(HostClock, MessagesOfAQueueThatIsNeverEmptyAreAsOldAsTheyAre) {
+  HostClock clock;
+  MonotonicTime local{1000s};
+  Duration host = 5000s;
+  (void)clock.observe(host, local);
+  // A callback of 12 ms for each of 200 states a second: each waits for 1.2 s.
+  local += 1200ms;
+  for (int i = 0; i < 1000; ++i) EXPECT_LT(clock.observe(host += 12ms, local += 12ms, false), local - 1100ms);
+}
+
 }  // namespace
 }  // namespace host_clock_test
 }  // namespace robot_client
