@@ -395,7 +395,7 @@ class RobotClient:
         The same targets, and not COAST: after that the daemon would have nothing to do in their
         stead. Motors that are disabled do their on_disable instead.
         """
-        known = self._inbox.state and self._inbox.state.motors
+        known = None if self._inbox.state is None else self._inbox.state.motors
         last = self._in_force.at(self._link.now(), known, disabled)
         if last:
             self._publish_command(last, validity_ms=1)
