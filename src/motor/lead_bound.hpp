@@ -9,18 +9,29 @@ namespace rc10 {
 
 /// Bound of the speed at which a spring leads a shaft to a place: spring and damper balance there. A load
 /// needs more of the spring than that, or it sinks for ever. So the bound gives way to what the shaft has to
-/// carry, which it finds while it acts: a shaft that is drawn away from the place meets the whole stiffness,
-/// one that lags gets more little by little; what makes it too fast is taken back.
+/// carry, which is what spring and damper balance while it does not accelerate. A shaft that is drawn away
+/// meets the whole stiffness, one that stands gets more little by little; one that was let go, less at once.
 class LeadBound {
  public:
   /// Whether it changed the law, whose spring may come to `most_nm`. `limit_rad_s` above 0.
   [[nodiscard]] bool apply(SpringLaw& law, const SpringState& at, double limit_rad_s, double most_nm,
                            MonotonicTime now) noexcept;
+  /// Before a stop: what stands at its limit, against a shaft with less than half of the limit of the speed,
+  /// ends. Below, it cannot be told from a load.
+  void dropWindup(double velocity_rad_s, double limit_rad_s, double most_nm) noexcept;
   /// No place is followed any more.
   void release() noexcept { *this = {}; }
 
  private:
+  [[nodiscard]] bool woundUp(double most_nm) const noexcept;
+  void estimate(const SpringLaw& law, const SpringState& at, double limit_rad_s, double most_nm,
+                double step_s) noexcept;
+  [[nodiscard]] bool letGo(double velocity_rad_s, double limit_rad_s, double damping_nms_per_rad,
+                           double step_s) noexcept;
+
   double load_nm_ = 0.0;  ///< Torque against it, so far.
+  double asks_ = 0.0;     ///< +1 or -1: side on which the last place was too far; 0: none was.
+  double stood_s_ = 0.0;  ///< Time that it stood since it last ran.
   std::optional<MonotonicTime> last_;
 };
 

@@ -151,6 +151,22 @@ TEST(CubemarsMit, AnAngleIsApproachedNoFasterThanTheLimit) {
   EXPECT_NE(bench.motor().limits() & kLimitVelocity, 0U);
 }
 
+TEST(CubemarsMit, AfterAPushAgainstWhatBlocksItAStopDoesNotPressOn) {
+  auto settings = mit({{"angle_stiffness_nm_per_rad", 30.0}, {"angle_damping_nms_per_rad", 1.0}});
+  settings.velocity_limit_rpm = 10.0F;
+  settings.effort_limit = 12.0F;
+  Mit bench(settings);
+  const auto torqueAt0Nm = [&](double place_deg) {
+    (void)bench.feedMit(0.0);
+    return bench.sumNm(bench.command({.mode = ControlMode::kTotalAngle, .value = place_deg}), 0.0, 0.0);
+  };
+  for (int i = 0; i < 1500; ++i) (void)torqueAt0Nm(60.0);
+  ASSERT_GT(torqueAt0Nm(60.0), 9.0);
+  bench.motor().dropWindup(0.5F);
+  EXPECT_LT(torqueAt0Nm(60.0), 1.3) << "damping times limit";
+  EXPECT_LT(torqueAt0Nm(0.0), 0.2);
+}
+
 TEST(CubemarsMit, GainsAndTorqueCountAtTheShaftBehindTheGear) {
   auto settings = mit();
   settings.gear_ratio = 18.0;  // 2 behind the drive's own 9

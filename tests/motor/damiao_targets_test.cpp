@@ -156,6 +156,22 @@ TEST(DamiaoMotor, NoMitTargetWhateverItIsAsksForMoreThanTheLimit) {
   }
 }
 
+TEST(DamiaoMotor, AfterAPushAgainstWhatBlocksItAStopDoesNotPressOn) {
+  auto settings = damiaoSettingsOf();
+  settings.velocity_limit_rpm = 10.0F;
+  EnabledDesk desk(settings);
+  const auto torqueAt0Nm = [&](double place_deg) {
+    desk.feed(stateAt(0.0));
+    desk.command({.mode = ControlMode::kTotalAngle, .value = place_deg});
+    return torqueNm(mitOf(desk.tick()), {});
+  };
+  for (int i = 0; i < 1500; ++i) (void)torqueAt0Nm(60.0);
+  ASSERT_GT(torqueAt0Nm(60.0), 9.0);
+  desk.motor().dropWindup(0.5F);
+  EXPECT_LT(torqueAt0Nm(60.0), 1.3) << "damping times limit";
+  EXPECT_LT(torqueAt0Nm(0.0), 0.2);
+}
+
 TEST(DamiaoMotor, NoSpeedOrPositionFrameExceedsTheLimits) {
   std::mt19937 generator(7);
   for (const std::string control : {"velocity", "position_velocity", "force_position"}) {

@@ -133,6 +133,21 @@ TEST(RobStrideMotor, AnAngleTargetIsNotApproachedFasterThanTheLimit) {
   EXPECT_NE(bench.motor.limits() & kLimitVelocity, 0U);
 }
 
+TEST(RobStrideMotor, AfterAPushAgainstWhatBlocksItAStopDoesNotPressOn) {
+  auto settings = robStrideSettings("RS00");
+  settings.velocity_limit_rpm = 10.0F;
+  Bench bench(settings);
+  const auto torqueAt0Nm = [&](double place_deg) {
+    bench.run();
+    return torqueOf(bench.operation({.mode = ControlMode::kTotalAngle, .value = place_deg}), 0.0, 0.0);
+  };
+  for (int i = 0; i < 1500; ++i) (void)torqueAt0Nm(60.0);
+  ASSERT_GT(torqueAt0Nm(60.0), 13.0);
+  bench.motor.dropWindup(0.5F);
+  EXPECT_LT(torqueAt0Nm(60.0), 1.3) << "damping times limit";
+  EXPECT_LT(torqueAt0Nm(0.0), 0.2);
+}
+
 TEST(RobStrideMotor, DampAndBrakeResistTheMotion) {
   Bench bench(robStrideSettings("RS03"));
   bench.run(0.0, 2.0);

@@ -190,6 +190,14 @@ double CubemarsMit::driveRadS(double output_rpm) const noexcept {
   return toDrive(output_rpm) * kRadPerSPerRpm;
 }
 
+double CubemarsMit::limitRadS() const noexcept {
+  return std::fabs(driveRadS(static_cast<double>(velocityLimitRpm())));
+}
+
+void CubemarsMit::dropWindup(float /*least_rpm*/) noexcept {
+  lead_.dropWindup(velocity_rad_s_, limitRadS(), driveTorqueLimitNm());
+}
+
 double CubemarsMit::boundRpm(double wanted_rpm) noexcept {
   return rpmWithinLimit(wanted_rpm, own().ranges.velocity_rad_s / std::fabs(driveRadS(1.0)));
 }
@@ -224,8 +232,7 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
 
 SpringLaw CubemarsMit::approachLaw(const Target& target, MonotonicTime now) noexcept {
   auto law = angleLaw(target, angle_stiffness_, angle_damping_);
-  const double limit_rad_s = std::fabs(driveRadS(static_cast<double>(velocityLimitRpm())));
-  if (limit_rad_s > 0.0 && lead_.apply(law, measured(), limit_rad_s, driveTorqueLimitNm(), now))
+  if (limitRadS() > 0.0 && lead_.apply(law, measured(), limitRadS(), driveTorqueLimitNm(), now))
     limits_ |= kLimitVelocity;
   return law;
 }

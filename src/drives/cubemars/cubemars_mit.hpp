@@ -33,6 +33,7 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
   [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
   bool setZero(double angle_deg) noexcept override;
+  void dropWindup(float least_rpm) noexcept override;
 
  private:
   enum class Step : std::uint8_t { kEnter };
@@ -55,6 +56,7 @@ class CubemarsMit : public CubeMars_Motor {
   void release() noexcept;
   [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
   [[nodiscard]] double driveRadS(double output_rpm) const noexcept;
+  [[nodiscard]] double limitRadS() const noexcept;  ///< 0: none.
   [[nodiscard]] SpringState measured() const noexcept { return {position_rad_, velocity_rad_s_}; }
   [[nodiscard]] CanFrame commandFrame(const SpringLaw& law) const noexcept;
 

@@ -191,6 +191,10 @@ double Damiao_Motor::fastestRadS() const noexcept {
   return limit_rad_s > 0.0 ? std::min(limit_rad_s, own_.scale.v_max_rad_s) : own_.scale.v_max_rad_s;
 }
 
+void Damiao_Motor::dropWindup(float /*least_rpm*/) noexcept {
+  lead_.dropWindup(measured_rad_s_, fastestRadS(), torqueLimitNm());
+}
+
 void Damiao_Motor::release() noexcept {
   command_ = specialFrame(Special::kDisable);
   reach_.release();

@@ -35,6 +35,7 @@ class Damiao_Motor : public SoloMotor {
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
   void clearComplaint() noexcept override;
   bool setZero(double angle_deg) noexcept override;
+  void dropWindup(float least_rpm) noexcept override;
   [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
 
   /// The id of its control frames. The registers' id, which it also sends, is common to all Damiao drives:

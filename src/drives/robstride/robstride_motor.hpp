@@ -43,6 +43,7 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
   void clearComplaint() noexcept override { clear_ordered_ = true; }
   bool setZero(double angle_deg) noexcept override;
+  void dropWindup(float least_rpm) noexcept override;
   [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
 
  private:

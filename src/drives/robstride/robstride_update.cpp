@@ -117,6 +117,10 @@ void RobStride_Motor::limitApproach(SpringLaw& wanted, MonotonicTime now) noexce
   if (lead_.apply(wanted, measured(), limitRadS(), limitNm(), now)) limits_ |= kLimitVelocity;
 }
 
+void RobStride_Motor::dropWindup(float /*least_rpm*/) noexcept {
+  lead_.dropWindup(seen_.velocity_rad_s, limitRadS(), limitNm());
+}
+
 void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {
   const double limit = limitNm();
   // The gains as they arrive: on a coarse scale they differ enough to matter.
