@@ -185,8 +185,10 @@ class Oracle {
     bool rearms = false;
     bool stops_now = false;  ///< Perhaps: since one is lost or was refused.
     bool rests_now = false;  ///< Perhaps: since one was.
-    MotorSet may_rearm;      ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
-    MotorSet must_rearm;     ///< Those of them that were ACTIVE.
+    bool disable_asked = false;
+    bool first_disable = false;  ///< Of one that rests with it: that lets go of none that acts together.
+    MotorSet may_rearm;   ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
+    MotorSet must_rearm;  ///< Those of them that were ACTIVE.
   };
 
   /// A joint that homes at a stop.

@@ -41,7 +41,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
     bool leaves = false;
     bool disable_asked = false;
     bool faulted = false;
-    group.stops_now = group.rests_now = false;
+    group.stops_now = group.rests_now = group.disable_asked = group.first_disable = false;
     MotorSet active;
     MotorSet enabling;  // it may have become ACTIVE within the tick
     MotorSet rearmed;
@@ -53,6 +53,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       if (before == MotorStatus::kActive) active.set(i);
       if (before == MotorStatus::kEnabling) enabling.set(i);
       disable_asked |= motor.disables_asked > 0;
+      group.first_disable |= motor.disables_asked > 0 && motor.rests_with_group;
       if (after == MotorStatus::kEnabling && !motor.enable_asked && before != MotorStatus::kEnabling)
         rearmed.set(i);
       if (!group.required.test(i)) continue;
@@ -63,6 +64,7 @@ void Oracle::judgeGroups(const Snapshot& snapshot) {
       leaves |= isOn(before) && (!isOn(after) || motor.disables_asked > 0);
       group.rests_now |= motor.disables_asked > 0 && (isOn(before) || motor.enable_asked);
     }
+    group.disable_asked = disable_asked;
     bool alone = alone_ && group.members.test(*alone_);
     for (std::size_t i = 0; i < motors_.size(); ++i)
       alone |= group.members.test(i) && motors_[i].perhaps_alone;
@@ -157,11 +159,15 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     if (motor.coast_asked) actions |= coast;
     return setActions(motor, actions);
   }
-  if (motor.coast_asked || motor.disables_asked > 0) motor.actions |= coast;
+  const auto* group =
+      motor.group != kNoGroup && groups_[motor.group].together ? &groups_[motor.group] : nullptr;
+  const bool others_asked = group != nullptr && group->disable_asked;
+  if (motor.coast_asked || motor.disables_asked > 0 || others_asked) motor.actions |= coast;
   // A target that came and went within the tick cannot be; one that was taken back by COAST can.
   if (after == MotorStatus::kReady && motor.disables_asked > 0 && motor.disables_asked < 2 &&
       before == MotorStatus::kReady && !motor.enable_asked) {
-    if (std::exchange(motor.rests_with_group, false)) {
+    const bool first = group != nullptr && group->first_disable;
+    if (std::exchange(motor.rests_with_group, false) || first) {
       motor.actions |= coast;
     } else {
       setActions(motor, coast);
