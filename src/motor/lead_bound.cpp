@@ -28,7 +28,7 @@ constexpr double kLetGoS = 0.02;
 constexpr double kWoundUp = 0.98;
 constexpr Duration kLongestStep = std::chrono::milliseconds{10};
 
-// Of spring and damper, without what is fed forward.
+// Torque of spring and damper, without the part that is fed forward.
 double springNm(SpringLaw law, const SpringState& at) noexcept {
   law.torque_nm = 0.0;
   return torqueNm(law, at);
@@ -39,7 +39,7 @@ double springNm(SpringLaw law, const SpringState& at) noexcept {
 bool LeadBound::woundUp(double most_nm) const noexcept { return std::fabs(load_nm_) >= kWoundUp * most_nm; }
 
 void LeadBound::dropWindup(double velocity_rad_s, double limit_rad_s, double most_nm) noexcept {
-  const bool pushes = asks_ * load_nm_ > 0.0;  // what is lowered does not
+  const bool pushes = asks_ * load_nm_ > 0.0;  // a load that is lowered does not
   if (pushes && woundUp(most_nm) && asks_ * velocity_rad_s < kStands * limit_rad_s) load_nm_ = 0.0;
 }
 

@@ -186,7 +186,7 @@ class Oracle {
     bool stops_now = false;  ///< Perhaps: since one is lost or was refused.
     bool rests_now = false;  ///< Perhaps: since one was.
     bool disable_asked = false;
-    bool first_disable = false;  ///< Of one that rests with it: that lets go of none that acts together.
+    bool first_disable = false;  ///< One that rests with it: none that acts together is let go.
     MotorSet may_rearm;   ///< Were ACTIVE, or about to be, when it stopped, and nothing forbids it since.
     MotorSet must_rearm;  ///< Those of them that were ACTIVE.
   };
