@@ -33,6 +33,9 @@ class ModuleRobot {
   [[nodiscard]] virtual MotorStatus status(std::size_t motor) const noexcept = 0;
   /// Whether a target of this module would be obeyed now: the motor is ACTIVE and nobody else commands it.
   [[nodiscard]] virtual bool obeys(std::size_t motor) const noexcept = 0;
+  /// Highest speed that the reduced mode leaves the motor now, rpm; infinite where it leaves it all. Each
+  /// motor is held to its own: who divides a motion among several keeps below the lowest.
+  [[nodiscard]] virtual double speedCeilingRpm(std::size_t motor) const noexcept = 0;
 
   /// For this tick. All targets of one update() act together, or, if one of the motors is commanded by
   /// somebody of the same or a higher priority, none does. A motor without a target for some ticks falls

@@ -6,6 +6,7 @@
 
 #include "app/swerve_kinematics.hpp"
 #include "module/chassis_keys.hpp"
+#include "module/speed_ceiling.hpp"
 #include "module/wheeled_chassis.hpp"
 
 namespace rc10 {
@@ -34,7 +35,8 @@ class SwerveChassis final : public Chassis_Base {
 
   void drive(const Twist2D& body, ModuleRobot& robot) noexcept override {
     const auto now = modules(robot, [&](std::size_t i) { return velocity(robot, i); });
-    const auto wanted = steered(limited(kinematics_.inverse(body, now), limit_rpm_), now);
+    const auto limit_rpm = sharedLimitRpm(robot, drives_, limit_rpm_);
+    const auto wanted = steered(limited(kinematics_.inverse(body, now), limit_rpm), now);
     for (std::size_t i = 0; i < kCount; ++i) {
       const auto& module = wanted.*SwerveModules::kAll[i];
       robot.setTarget(drives_[i], {.mode = ControlMode::kVelocity, .value = module.speed_rpm});

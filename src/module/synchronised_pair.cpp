@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "module/speed_ceiling.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -76,10 +78,11 @@ class SynchronisedPair : public Module_Base {
         robot.setTarget(motor, {.mode = ControlMode::kTotalAngle, .value = input(kTotalAngleDeg)});
     } else if (std::isfinite(input(kVelocityRpm))) {
       // Speeds that both can reach: at the limit the one that is ahead is still slowed.
-      const double both_rpm = std::clamp(input(kVelocityRpm), -velocity_limit_rpm_, velocity_limit_rpm_);
+      const double limit_rpm = sharedLimitRpm(robot, motors_, velocity_limit_rpm_);
+      const double both_rpm = std::clamp(input(kVelocityRpm), -limit_rpm, limit_rpm);
       const double pull_rpm = correction_rpm_per_deg_ * difference_deg / 2.0;
-      turn(robot, motors_[0], both_rpm - pull_rpm);
-      turn(robot, motors_[1], both_rpm + pull_rpm);
+      turn(robot, motors_[0], both_rpm - pull_rpm, limit_rpm);
+      turn(robot, motors_[1], both_rpm + pull_rpm, limit_rpm);
     }
   }
 
@@ -88,9 +91,9 @@ class SynchronisedPair : public Module_Base {
   enum Output : std::size_t { kAngleOut, kDifference, kApart };
   enum EventPlace : std::size_t { kCameApart };
 
-  void turn(ModuleRobot& robot, std::size_t motor, double velocity_rpm) const noexcept {
-    robot.setTarget(motor, {.mode = ControlMode::kVelocity,
-                            .value = std::clamp(velocity_rpm, -velocity_limit_rpm_, velocity_limit_rpm_)});
+  static void turn(ModuleRobot& robot, std::size_t motor, double velocity_rpm, double limit_rpm) noexcept {
+    robot.setTarget(
+        motor, {.mode = ControlMode::kVelocity, .value = std::clamp(velocity_rpm, -limit_rpm, limit_rpm)});
   }
 
   std::array<std::size_t, 2> motors_;

@@ -9,6 +9,7 @@
 
 #include "app/wheel_speeds.hpp"
 #include "module/chassis_base.hpp"
+#include "module/speed_ceiling.hpp"
 
 namespace rc10 {
 
@@ -68,7 +69,7 @@ class WheeledChassis final : public Chassis_Base {
 
  protected:
   void drive(const Twist2D& body, ModuleRobot& robot) noexcept override {
-    Wheels speeds = limited(kinematics_.inverse(body), limit_rpm_);
+    Wheels speeds = limited(kinematics_.inverse(body), sharedLimitRpm(robot, wheels_, limit_rpm_));
     for (std::size_t i = 0; i < kCount; ++i) {
       robot.setTarget(wheels_[i], {.mode = ControlMode::kVelocity, .value = speeds.*Wheels::kAll[i]});
     }

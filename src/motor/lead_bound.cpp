@@ -21,6 +21,8 @@ constexpr double kRuns = 1.5;
 // A load at balance does not start to run: after so long it was let go. The spring of a load that has just
 // sagged swings back with up to 0.16 of load over damping, whatever the inertia: what is faster was let go.
 constexpr double kStoodS = 0.3;
+// Time at more than half the limit after which it moves along: one that was let go is past the limit sooner.
+constexpr double kMovesS = 0.1;
 constexpr double kSwing = 0.3;
 // Time in which the whole torque is taken back from a shaft that was let go.
 constexpr double kLetGoS = 0.02;
@@ -40,7 +42,7 @@ bool LeadBound::woundUp(double most_nm) const noexcept { return std::fabs(load_n
 
 void LeadBound::dropWindup(double velocity_rad_s, double limit_rad_s, double most_nm) noexcept {
   const bool pushes = asks_ * load_nm_ > 0.0;  // a load that is lowered does not
-  if (pushes && woundUp(most_nm) && asks_ * velocity_rad_s < kStands * limit_rad_s) load_nm_ = 0.0;
+  if (pushes && woundUp(most_nm) && asks_ * velocity_rad_s < kStands * limit_rad_s) load_nm_ = carried_nm_;
 }
 
 bool LeadBound::apply(SpringLaw& law, const SpringState& at, double limit_rad_s, double most_nm,
@@ -65,7 +67,7 @@ bool LeadBound::apply(SpringLaw& law, const SpringState& at, double limit_rad_s,
   // The place is asked for on the other side of what holds the shaft: to press on would lead away from it.
   if (sideOf(nearer) * load_nm_ < 0.0 && woundUp(most_nm) &&
       std::fabs(at.velocity_rad_s) < kStands * limit_rad_s) {
-    load_nm_ = 0.0;
+    load_nm_ = carried_nm_;
     nearer = bounded(load_nm_);
   }
   law = nearer;
@@ -91,16 +93,26 @@ void LeadBound::estimate(const SpringLaw& law, const SpringState& at, double lim
   if (letGo(at.velocity_rad_s, limit_rad_s, law.damping_nms_per_rad, step_s) && asks_ * load_nm_ > 0.0)
     load_nm_ = asks_ * std::max(asks_ * load_nm_ - most_nm * step_s / kLetGoS, 0.0);
   if (towards_rad_s < kLags * limit_rad_s) {
-    const double whole_s = asks_ * load_nm_ < 0.0 ? kUnwindS : kWholeS;
-    load_nm_ += asks_ * std::min(most_nm / whole_s, stiffness * limit_rad_s) * step_s;
+    const bool unwinds = asks_ * load_nm_ < 0.0;
+    const double led_nm_s = stiffness * limit_rad_s;
+    const double nm_s = unwinds ? std::min(most_nm / kUnwindS, std::max(led_nm_s, most_nm / kWholeS))
+                                : std::min(most_nm / kWholeS, led_nm_s);
+    load_nm_ += asks_ * nm_s * step_s;
   }
   load_nm_ = std::clamp(load_nm_, -most_nm, most_nm);
+  if (asks_ == 0.0 || std::fabs(at.velocity_rad_s) >= kLags * limit_rad_s) carried_nm_ = load_nm_;
 }
 
 bool LeadBound::letGo(double velocity_rad_s, double limit_rad_s, double damping_nms_per_rad,
                       double step_s) noexcept {
   const double towards_rad_s = asks_ * velocity_rad_s;
-  if (std::fabs(velocity_rad_s) < kStands * limit_rad_s) stood_s_ += step_s;
+  if (std::fabs(velocity_rad_s) < kStands * limit_rad_s) {
+    stood_s_ += step_s;
+    moved_s_ = 0.0;
+  } else {
+    moved_s_ += step_s;
+    if (moved_s_ >= kMovesS) stood_s_ = 0.0;
+  }
   if (!(std::fabs(velocity_rad_s) > kRuns * limit_rad_s)) return false;
   if (towards_rad_s > 0.0 && stood_s_ >= kStoodS) return true;
   stood_s_ = 0.0;

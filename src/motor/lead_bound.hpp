@@ -16,8 +16,9 @@ class LeadBound {
   /// Whether it changed the law, whose spring may come to `most_nm`. `limit_rad_s` above 0.
   [[nodiscard]] bool apply(SpringLaw& law, const SpringState& at, double limit_rad_s, double most_nm,
                            MonotonicTime now) noexcept;
-  /// Before a stop: what stands at its limit, against a shaft with less than half of the limit of the speed,
-  /// ends. Below, it cannot be told from a load.
+  /// Before a stop: of what stands at its limit, against a shaft with less than half of the limit of the
+  /// speed, the part stays that it carried while it last moved. Below the limit, a push cannot be told from a
+  /// load.
   void dropWindup(double velocity_rad_s, double limit_rad_s, double most_nm) noexcept;
   /// No place is followed any more.
   void release() noexcept { *this = {}; }
@@ -29,9 +30,11 @@ class LeadBound {
   [[nodiscard]] bool letGo(double velocity_rad_s, double limit_rad_s, double damping_nms_per_rad,
                            double step_s) noexcept;
 
-  double load_nm_ = 0.0;  ///< Torque against it, so far.
-  double asks_ = 0.0;     ///< +1 or -1: side on which the last place was too far; 0: none was.
-  double stood_s_ = 0.0;  ///< Time that it stood since it last ran.
+  double load_nm_ = 0.0;     ///< Torque against it, so far.
+  double carried_nm_ = 0.0;  ///< The same when it last moved: what came since is a hand, or a stop.
+  double asks_ = 0.0;        ///< +1 or -1: side on which the last place was too far; 0: none was.
+  double stood_s_ = 0.0;     ///< Time that it stood since it last moved along.
+  double moved_s_ = 0.0;     ///< Time that it has moved since it last stood.
   std::optional<MonotonicTime> last_;
 };
 

@@ -185,6 +185,17 @@ TEST_F(Chassis, NoWheelIsToldMoreThanItsLimitAndTheDirectionIsKept) {
   EXPECT_NEAR(output(kWz) / output(kVx), 90.0, 1e-4);
 }
 
+TEST_F(Chassis, InReducedModeTheDirectionIsKept) {
+  buildMecanum();
+  robot_->motor(2).speed_ceiling_rpm = 10.0;
+  give({.vx_m_s = 1.0, .vy_m_s = 0.5, .wz_deg_s = 0.0});
+  run(3000);
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) fastest = std::max(fastest, std::fabs(target(i)));
+  EXPECT_NEAR(fastest, 10.0, 1e-6);
+  EXPECT_NEAR(std::fabs(target(0) / target(1)), 1.0 / 3.0, 1e-6);
+}
+
 TEST_F(Chassis, InTheFrameOfTheWorldItKeepsItsDirectionWhileItTurns) {
   buildMecanum();
   give({.vx_m_s = 0.5, .wz_deg_s = 90.0, .frame = 1.0});

@@ -20,6 +20,7 @@ class FakeRobot : public ModuleRobot {
     MotorFeedback feedback;
     MotorStatus status = MotorStatus::kActive;
     bool obeys = true;
+    double speed_ceiling_rpm = std::numeric_limits<double>::infinity();
     bool heard = true;             ///< A sample comes with each update.
     std::optional<Target> target;  ///< Target of the last update; empty: none.
   };
@@ -75,6 +76,9 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] std::size_t motorCount() const noexcept override { return motors_.size(); }
   [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override {
     return motors_[motor].feedback;
+  }
+  [[nodiscard]] double speedCeilingRpm(std::size_t motor) const noexcept override {
+    return motors_[motor].speed_ceiling_rpm;
   }
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept override {
     return motors_[motor].status;

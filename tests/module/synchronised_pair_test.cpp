@@ -78,6 +78,15 @@ TEST_F(SynchronisedPair, TheMotorsOwnLimitCountsAsWell) {
   EXPECT_EQ(target(1), 394.0);
 }
 
+TEST_F(SynchronisedPair, InReducedModeTheOneAheadIsSlowed) {
+  robot_.motor(1).speed_ceiling_rpm = 10.0;
+  robot_.motor(0).feedback.total_angle_deg = 2.0;
+  velocity(60.0);
+  robot_.update(*module_);
+  EXPECT_EQ(target(0), 8.0);
+  EXPECT_EQ(target(1), 10.0);
+}
+
 TEST_F(SynchronisedPair, BothFollowOneAngle) {
   angle(720.0);
   robot_.update(*module_);

@@ -139,6 +139,49 @@ TEST(LeadBound, APlaceBehindABlockedShaftIsNotPressedAwayFrom) {
   EXPECT_LT(shaft.torque_nm, 0.01);
 }
 
+TEST(LeadBound, AtALowLimitTooItPressesOnForASecondAtMost) {
+  for (const double limit_rpm : {1.0, 2.0}) {
+    Drive drive = kSlowDamiao;
+    drive.limit_rad_s = limit_rpm * kRadSPerRpm;
+    Shaft shaft{.drive = drive};
+    shaft.blockedFor(Duration{4s} / static_cast<int>(limit_rpm));  // short of all its torque
+    shaft.run(1s, -60.0 * kRadPerDeg);
+    EXPECT_LT(shaft.torque_nm, 0.01) << limit_rpm;
+  }
+}
+
+TEST(LeadBound, ALoadThatWasLiftedAgainstAnObstacleIsLoweredSlowly) {
+  for (const double limit_rpm : {5.0, 10.0}) {
+    for (const double inertia_kg_m2 : {0.02, 0.05}) {
+      Drive drive = kSlowDamiao;
+      drive.limit_rad_s = limit_rpm * kRadSPerRpm;
+      Shaft shaft{.drive = drive, .load_nm = 6.0, .inertia_kg_m2 = inertia_kg_m2};
+      shaft.run(3s, 0.0);
+      shaft.blockedFor(1500ms);
+      shaft.blocked = false;
+      shaft.run(500ms, -90.0 * kRadPerDeg);
+      EXPECT_LT(shaft.fastest_rad_s, 1.5 * drive.limit_rad_s) << limit_rpm << " rpm, " << inertia_kg_m2;
+    }
+  }
+}
+
+TEST(LeadBound, AShoveDuringALiftDropsNothing) {
+  Drive drive = kSlowDamiao;
+  drive.limit_rad_s = 2.0 * kRadSPerRpm;
+  Shaft shaft{.drive = drive, .load_nm = 6.0};
+  shaft.run(3s, 0.0);
+  shaft.run(1s, 1.0);
+  const double place_rad = shaft.at.position_rad;
+  for (int i = 0; i < 10; ++i) {
+    shaft.at.velocity_rad_s = 1.7 * drive.limit_rad_s;
+    shaft.tick(1.0);
+  }
+  for (int i = 0; i < 1000; ++i) {
+    shaft.tick(1.0);
+    ASSERT_GT(shaft.at.position_rad, place_rad - 0.02) << i;
+  }
+}
+
 TEST(LeadBound, BeforeAStopWhatStandsAtItsLimitEndsAndALoadStays) {
   Shaft blocked{.drive = kSlowDamiao};
   blocked.blockedFor(1500ms);

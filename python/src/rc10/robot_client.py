@@ -127,7 +127,7 @@ class RobotClient:
         self._closed = False
         self._moves: dict[str, Move] = {}
         self._resend_s = 0.0
-        self._paused = False  # since then no state has been seen
+        self._resumed_s = 0.0  # end of the last pause
         self._judged: RobotState | None = None
         self._inbox.on_event = self._on_event
         # To be undone on leaving.
@@ -475,12 +475,12 @@ class RobotClient:
                 self._moves.pop(name)
         now_s = self._link.now()
         if self._moves and now_s >= self._resend_s:
-            self._paused = self._paused or now_s - self._resend_s > _PAUSE_S
+            if now_s - self._resend_s > _PAUSE_S:
+                self._resumed_s = now_s
             self._resend_s = now_s + RESEND_S
             # Only what is known of after the pause tells whether the motors still obey.
-            if self._paused and (state is None or now_s - state.taken_at_s > _PAUSE_S):
+            if state is None or state.taken_at_s < self._resumed_s:
                 return
-            self._paused = False
             for name, move in self._moves.items():
                 self._publish_command({name: move.setpoint}, _MOVE_VALIDITY_MS)
 

@@ -30,6 +30,8 @@ class Axis {
   [[nodiscard]] FaultCode fault() const noexcept { return fault_; }
   /// Reason why it does not obey.
   [[nodiscard]] const Stop& stop() const noexcept { return stop_; }
+  /// Ceiling of the reduced mode; infinite outside it.
+  [[nodiscard]] double speedCeilingRpm() const noexcept { return reduced_.ceilingRpm(); }
   [[nodiscard]] bool fallbackActs() const noexcept { return fallback_.acts(); }
   [[nodiscard]] FallbackAction timeoutAction() const noexcept { return entry_.fallback.on_timeout; }
   /// It must not be enabled: an angle could lead it a turn astray. One that is homed finds its angle itself.

@@ -78,6 +78,9 @@ class Supervisor {
   }
   [[nodiscard]] RobotStatus robotState() const noexcept { return state_; }
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept { return axes_[motor].status(); }
+  [[nodiscard]] double speedCeilingRpm(std::size_t motor) const noexcept {
+    return axes_[motor].speedCeilingRpm();
+  }
 
  private:
   static constexpr std::size_t kNoGroup = ~std::size_t{0};

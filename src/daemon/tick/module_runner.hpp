@@ -48,6 +48,9 @@ class ModuleRunner : private ModuleRobot {
   [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override;
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept override;
   [[nodiscard]] bool obeys(std::size_t motor) const noexcept override;
+  [[nodiscard]] double speedCeilingRpm(std::size_t motor) const noexcept override {
+    return supervisor_.speedCeilingRpm(motor);
+  }
   void setTarget(std::size_t motor, const Target& target) noexcept override;
   void ask(RobotRequest request, std::size_t motor, double angle_deg) noexcept override;
   void forgetReference(std::size_t motor) noexcept override { supervisor_.forgetReference(motor); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <string_view>
+#include <utility>
 
 #include "robot_client/session/event_codes.hpp"
 #include "robot_client/session/obstacle.hpp"
@@ -83,7 +84,8 @@ std::vector<MotorSetpoints> HeldTargets::takeDue(MonotonicTime now) {
   std::vector<MotorSetpoints> due;
   for (auto& message : messages_) {
     if (message.due > now) continue;
-    if (now - message.due > kPause) message.resumed = now;
+    // Once it is confirmed it goes out, however late this program is again.
+    if (!std::exchange(message.confirmed, false) && now - message.due > kPause) message.resumed = now;
     // On a grid; after a pause from now on, never in a burst.
     message.due = std::max(message.due + resend_, now + resend_ / 2);
     if (message.resumed) continue;
@@ -113,7 +115,10 @@ std::vector<HeldTargets::Dropped> HeldTargets::judge(const RobotState& state, co
         reason = order.motor + " was enabled anew while this program stood still";
       if (reason) dropped.push_back({order.motor, *reason});
     }
-    if (resumes) message.resumed.reset();
+    if (resumes) {
+      message.resumed.reset();
+      message.confirmed = true;
+    }
   }
   for (const auto& drop : dropped) release(drop.motor);
   return dropped;

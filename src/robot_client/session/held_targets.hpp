@@ -63,6 +63,7 @@ class HeldTargets {
     MonotonicTime due;
     std::int64_t shown_us = 0;
     std::optional<MonotonicTime> resumed{};  ///< A pause ended then, and no state of after it has come.
+    bool confirmed = false;                  ///< Such a state has come, and nothing was sent since.
   };
 
   Duration resend_;

@@ -65,6 +65,14 @@ TEST(HeldTargets, AfterAPauseAStateOfAfterItComesFirst) {
   EXPECT_EQ(held.takeDue(kStart + 940ms).size(), 1U);
 }
 
+TEST(HeldTargets, OnesOfAProgramThatIsAlwaysLateAreSentAfterEachConfirmation) {
+  HeldTargets held(20ms, 1000ms, 0ms);
+  held.set(turn("wheel", 60_rpm), kStart);
+  EXPECT_THAT(held.takeDue(kStart + 150ms), IsEmpty());
+  EXPECT_THAT(held.judge(heroState(kStart + 151ms), "me"), IsEmpty());
+  EXPECT_EQ(held.takeDue(kStart + 300ms).size(), 1U);
+}
+
 TEST(HeldTargets, AMotorThatWasEnabledAnewInAPauseIsNotDriven) {
   HeldTargets held(20ms, 100ms, 0ms);
   held.set({{"lift", Setpoint::brake()}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
