@@ -60,18 +60,18 @@ bool LeadBound::apply(SpringLaw& law, const SpringState& at, double limit_rad_s,
                     carried_rad_s + limit_rad_s - law.velocity_rad_s);
     return led;
   };
-  const auto sideOf = [&](const SpringLaw& led) {
+  const auto side_of = [&](const SpringLaw& led) {
     return wanted_rad == led.position_rad ? 0.0 : std::copysign(1.0, wanted_rad - led.position_rad);
   };
   SpringLaw nearer = bounded(load_nm_);
   // The place is asked for on the other side of what holds the shaft: to press on would lead away from it.
-  if (sideOf(nearer) * load_nm_ < 0.0 && woundUp(most_nm) &&
+  if (side_of(nearer) * load_nm_ < 0.0 && woundUp(most_nm) &&
       std::fabs(at.velocity_rad_s) < kStands * limit_rad_s) {
     load_nm_ = carried_nm_;
     nearer = bounded(load_nm_);
   }
   law = nearer;
-  asks_ = sideOf(law);
+  asks_ = side_of(law);
   estimate(law, at, limit_rad_s, most_nm, step_s);
   return asks_ != 0.0;
 }
