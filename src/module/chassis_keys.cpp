@@ -5,6 +5,7 @@
 #include <string>
 
 #include "module/chassis_base.hpp"
+#include "module/shared_limit.hpp"
 
 namespace rc10 {
 
@@ -33,12 +34,8 @@ Result<std::vector<std::size_t>> motorsOf(const OwnValues& own, std::string_view
 
 Result<double> wheelLimit(const OwnValues& own, const std::vector<std::size_t>& motors,
                           const RobotOutline& robot) {
-  if (own.given("wheel_limit_rpm")) return own.number("wheel_limit_rpm");
-  double limit_rpm = std::numeric_limits<double>::infinity();
-  for (const auto motor : motors) {
-    const auto own_limit_rpm = static_cast<double>(robot.motors[motor].velocity_limit_rpm);
-    if (own_limit_rpm > 0.0) limit_rpm = std::min(limit_rpm, own_limit_rpm);
-  }
+  const double limit_rpm = lowestLimitRpm(robot, motors);
+  if (own.given("wheel_limit_rpm")) return std::min(own.number("wheel_limit_rpm"), limit_rpm);
   if (limit_rpm < std::numeric_limits<double>::infinity()) return limit_rpm;
   return fail("wheel_limit_rpm: is missing, and no motor of it has a velocity_limit_rpm; add one of them");
 }

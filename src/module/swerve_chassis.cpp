@@ -6,7 +6,7 @@
 
 #include "app/swerve_kinematics.hpp"
 #include "module/chassis_keys.hpp"
-#include "module/speed_ceiling.hpp"
+#include "module/shared_limit.hpp"
 #include "module/wheeled_chassis.hpp"
 
 namespace rc10 {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "module/speed_ceiling.hpp"
+#include "module/shared_limit.hpp"
 
 namespace rc10 {
 namespace {
@@ -123,13 +123,9 @@ class SynchronisedPairType : public ModuleType {
         if (auto able = robot.require(mode, own.motor(key), key); !able) return tl::unexpected(able.error());
       }
     }
-    // The motors' own limits count as well: beyond, both would turn as fast, whatever lies between them.
-    double limit_rpm = own.number("velocity_limit_rpm");
-    for (const std::string_view key : {"left", "right"}) {
-      const auto own_limit_rpm = static_cast<double>(robot.motors[own.motor(key)].velocity_limit_rpm);
-      if (own_limit_rpm > 0.0) limit_rpm = std::min(limit_rpm, own_limit_rpm);
-    }
-    return std::make_unique<SynchronisedPair>(own, limit_rpm);
+    const std::array motors{own.motor("left"), own.motor("right")};
+    return std::make_unique<SynchronisedPair>(
+        own, std::min(own.number("velocity_limit_rpm"), lowestLimitRpm(robot, motors)));
   }
 };
 

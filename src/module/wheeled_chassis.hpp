@@ -9,7 +9,7 @@
 
 #include "app/wheel_speeds.hpp"
 #include "module/chassis_base.hpp"
-#include "module/speed_ceiling.hpp"
+#include "module/shared_limit.hpp"
 
 namespace rc10 {
 

@@ -21,9 +21,9 @@ constexpr double kRuns = 1.5;
 // A load at balance does not start to run: after so long it was let go. The spring of a load that has just
 // sagged swings back with up to 0.16 of load over damping, whatever the inertia: what is faster was let go.
 constexpr double kStoodS = 0.3;
+constexpr double kSwing = 0.3;
 // Time at more than half the limit after which it moves along: one that was let go is past the limit sooner.
 constexpr double kMovesS = 0.1;
-constexpr double kSwing = 0.3;
 // Time in which the whole torque is taken back from a shaft that was let go.
 constexpr double kLetGoS = 0.02;
 // Share of the most from which on a load is taken for one that the motor does not move: a hand, a stop.

@@ -185,6 +185,17 @@ TEST_F(Chassis, NoWheelIsToldMoreThanItsLimitAndTheDirectionIsKept) {
   EXPECT_NEAR(output(kWz) / output(kVx), 90.0, 1e-4);
 }
 
+TEST_F(Chassis, AWheelLimitBeyondThatOfAMotorDoesNotBendTheWay) {
+  auto own = common();
+  own.set("wheel_limit_rpm", 1000.0);  // of motors of 400 rpm
+  own.set("max_speed_m_s", 20.0);
+  buildMecanum(own);
+  give({.vx_m_s = 30.0, .vy_m_s = 15.0, .wz_deg_s = 0.0});
+  run(3000);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_LE(std::fabs(target(i)), 400.0 + 1e-6);
+  EXPECT_NEAR(std::fabs(target(0) / target(1)), 1.0 / 3.0, 1e-6);
+}
+
 TEST_F(Chassis, InReducedModeTheDirectionIsKept) {
   buildMecanum();
   robot_->motor(2).speed_ceiling_rpm = 10.0;

@@ -84,6 +84,14 @@ class LKTechMotor : public testing::Test {
     hear(angleReply(static_cast<std::int32_t>(std::lround(deg * motor_gear_ * 100.0))));
     hear(readingReply(0, 0, encoder));
   }
+  /// Heard first while it turns, with its encoder at 0, and told to hold.
+  void comeTurning(int deg_s, int count) {
+    hear(frameOf("141#9A1E600964000000"));
+    hear(readingReply(0, deg_s, 0));
+    hear(angleReply(count));
+    hear(readingReply(0, deg_s, 0));
+    motor_->order(FrameKind::kHold);
+  }
   std::string told(const Target& target) {
     motor_->order(FrameKind::kCommand, target);
     return tick().at(0);
@@ -101,11 +109,7 @@ class GearedLKTechMotor : public LKTechMotor {
 };
 
 TEST_F(LKTechMotor, AnOffsetOfItsCountIsKnownBeforeItStands) {
-  hear(frameOf("141#9A1E600964000000"));
-  hear(readingReply(0, 180, 0));  // 30 rpm, its encoder at 0
-  hear(angleReply(9000));         // but its count at 90 degrees
-  hear(readingReply(0, 180, 0));
-  motor_->order(FrameKind::kHold);
+  comeTurning(180, 9000);  // 30 rpm, its count at 90 degrees
   const auto frame = frameOf(tick().at(0));
   EXPECT_EQ(frame.data[0], 0xA4);
   EXPECT_NEAR(readLittleEndian<std::int32_t>(frame.data, 4), 9000, 10);
@@ -128,11 +132,7 @@ TEST_F(LKTechMotor, TheWayBetweenTwoAnswersOfATurningShaftIsNoOffset) {
 }
 
 TEST_F(LKTechMotor, ASmallOffsetIsKnownBeforeItIsToldAPlace) {
-  hear(frameOf("141#9A1E600964000000"));
-  hear(readingReply(0, 12, 0));  // 2 rpm, its encoder at 0
-  hear(angleReply(900));         // and its count at 9 degrees
-  hear(readingReply(0, 12, 0));
-  motor_->order(FrameKind::kHold);
+  comeTurning(12, 900);  // 2 rpm, its count at 9 degrees
   EXPECT_EQ(frameOf(tick().at(0)).data[0], 0xA2);
   hear(readingReply(0, 0, 0));
   hear(angleReply(900));

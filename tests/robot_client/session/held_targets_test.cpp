@@ -35,6 +35,14 @@ MotorSetpoints turn(const std::string& motor, Rpm velocity) {
   return {{motor, Setpoint::velocity(velocity)}};
 }
 
+/// The lift stays held.
+void expectOnlyTheWheelDropped(HeldTargets& held, const RobotState& state, const std::string& reason) {
+  const auto dropped = held.judge(state, "me");
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_THAT(dropped[0].reason, HasSubstr(reason));
+  EXPECT_THAT(held.motors(), ElementsAre("lift"));
+}
+
 TEST(HeldTargets, AreSentAgainOnAGrid) {
   HeldTargets held(20ms, 100ms, 0ms);
   held.set(turn("wheel", 60_rpm), kStart);
@@ -79,10 +87,7 @@ TEST(HeldTargets, AMotorThatWasEnabledAnewInAPauseIsNotDriven) {
   EXPECT_THAT(held.takeDue(kStart + 900ms), IsEmpty());
   auto state = heroState(kStart + 905ms);
   state.motors[1].owner = "";
-  const auto dropped = held.judge(state, "me");
-  ASSERT_EQ(dropped.size(), 1U);
-  EXPECT_THAT(dropped[0].reason, HasSubstr("wheel was enabled anew while this program stood still"));
-  EXPECT_THAT(held.motors(), ElementsAre("lift"));
+  expectOnlyTheWheelDropped(held, state, "wheel was enabled anew while this program stood still");
 }
 
 TEST(HeldTargets, ThatTheProgramSendsItselfAreNotSentAgain) {
@@ -147,10 +152,7 @@ TEST(HeldTargets, AMotorThatAnotherClientTookIsDroppedAndTheOthersStay) {
   held.set({{"lift", Setpoint::brake()}, {"wheel", Setpoint::velocity(60_rpm)}}, kStart);
   auto state = heroState(kStart + 200ms);
   state.motors[1].owner = "remote";
-  const auto dropped = held.judge(state, "me");
-  ASSERT_EQ(dropped.size(), 1U);
-  EXPECT_THAT(dropped[0].reason, HasSubstr("held by the client 'remote'"));
-  EXPECT_THAT(held.motors(), ElementsAre("lift"));
+  expectOnlyTheWheelDropped(held, state, "held by the client 'remote'");
 }
 
 TEST(HeldTargets, AMotorThatWasJustTakenOverMayStillShowItsOldOwner) {
