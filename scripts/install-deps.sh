@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the Debian packages that parts of this project need.
-#   scripts/install-deps.sh [--list|--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [web] [package]      default: all
-# --list: installs nothing, and prints the packages.
+#   scripts/install-deps.sh [--list|--missing|--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [web] [package]      default: all
+# --list: installs nothing, and prints the packages; --missing: those that are not installed.
 # --may-ask: installs nothing, but lets sudo ask for the password now, if something is missing.
 set -euo pipefail
 # shellcheck source=scripts/lib/nearest.sh
@@ -24,7 +24,7 @@ declare -A packages=(
 groups=(build test languages lint kernel vm web package)
 
 usage() {
-    echo "usage: scripts/install-deps.sh [--list|--may-ask] [${groups[*]}]  (default: all)"
+    echo "usage: scripts/install-deps.sh [--list|--missing|--may-ask] [${groups[*]}]  (default: all)"
 }
 
 die() {
@@ -56,15 +56,16 @@ apt() {
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
 }
 
-list='' may_ask=''
+list='' list_missing='' may_ask=''
 [ "${1:-}" != --list ] || { list=yes && shift; }
+[ "${1:-}" != --missing ] || { list_missing=yes && shift; }
 [ "${1:-}" != --may-ask ] || { may_ask=yes && shift; }
 [ $# -gt 0 ] || set -- "${groups[@]}"
 wanted=()
 for group in "$@"; do
     case $group in -h | --help) usage && exit ;; esac
     if [ -z "$group" ] || [ -z "${packages[$group]:-}" ]; then
-        echo "install-deps: no group '$group'$(did_you_mean "$group" "${groups[@]}" --list --may-ask)" >&2
+        echo "install-deps: no group '$group'$(did_you_mean "$group" "${groups[@]}" --list --missing --may-ask)" >&2
         usage >&2
         exit 2
     fi
@@ -76,6 +77,7 @@ done
 command -v dpkg-query >/dev/null || die "this is no Debian or Ubuntu; what is needed there: ${wanted[*]}"
 mapfile -t absent < <(missing "${wanted[@]}" | sort -u)
 [ ${#absent[@]} -gt 0 ] || exit 0
+[ -z "$list_missing" ] || { printf '%s\n' "${absent[@]}" && exit; }
 # Modules that are built with the headers must fit the kernel: both of one version.
 [[ " ${absent[*]} " != *" linux-headers-rt-amd64 "* ]] || absent+=(linux-image-rt-amd64)
 

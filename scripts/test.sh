@@ -55,11 +55,17 @@ for part in "${@:-default}"; do
     esac
 done
 
-# Packages of all parts, at once.
-mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
-"$here/install-deps.sh" --may-ask "${groups[@]}"
-progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
 # Costs of a set are those of the set alone.
 name=
 [ $# -gt 1 ] || name=${1:-default}
+
+# Packages of all parts, at once.
+mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
+"$here/install-deps.sh" --may-ask "${groups[@]}"
+if [ -n "$("$here/install-deps.sh" --missing "${groups[@]}")" ]; then
+    # run_parts.py says it as well, but Python is among the packages.
+    cold_s=$(sed -n "/\"$name\": {/,/}/s/.*\"cold_s\": \([0-9]*\).*/\1/p" "$here/test/budget.json")
+    echo "rc10d's tests: ${wanted[*]}.${cold_s:+ About $(as_minutes "$cold_s") on 2 cores, with the Debian packages, which come first.}"
+fi
+progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
 exec /usr/bin/python3 "$here/lib/run_parts.py" --name "$name" "${wanted[@]}"

@@ -129,3 +129,20 @@ def test_a_run_of_several_words_has_no_name(
         [tmp_path / "scripts" / "test.sh", *words], capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines()[-1] == f"--name|{name}"
+
+
+def test_a_bare_machine_reads_what_comes_and_how_long_before_the_packages(tmp_path: Path) -> None:
+    """Python, which says it otherwise, is among the packages."""
+    for program, text in (("dpkg-query", "exit 0"), ("apt-get", "exit 1"), ("sudo", "exit 1")):
+        (tmp_path / program).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / program).chmod(0o755)
+    bare = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    run = subprocess.run(
+        [REPO / "scripts" / "test.sh"], env=bare, capture_output=True, text=True, check=False
+    )
+    cold_s = json.loads((PARTS / "budget.json").read_text())["sets"]["default"]["cold_s"]
+    said = (
+        f"rc10d's tests: unit kernel host pages. About {cold_s // 60}:{cold_s % 60:02} on 2 cores"
+    )
+    assert run.stdout.startswith(said)
+    assert run.returncode != 0

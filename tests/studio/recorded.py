@@ -66,6 +66,7 @@ def field_at(web: Studio, structure: str, name: str) -> int:
 
 
 def format_of(web: Studio) -> dict[str, Any]:
-    with urllib.request.urlopen(web.url + "recording-format.json") as answer:
+    # A bare system has no /etc/hosts: only browsers know "localhost" by themselves.
+    with urllib.request.urlopen(f"http://127.0.0.1:{web.port}/recording-format.json") as answer:
         found: dict[str, Any] = json.load(answer)
     return found
