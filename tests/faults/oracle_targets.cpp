@@ -232,7 +232,11 @@ void Oracle::judgeField(std::size_t index, Field which, const FieldSeen& seen) {
     const double middle = field.softStart(share).middle();
     const double round = nearestTurn(value, seen.turn, middle);
     const double rounded = kRounded * std::max(std::fabs(field.start.low), std::fabs(field.asked.low));
-    if (!seen.brakes && !field.softStartAllows(round, share, seen.towards, seen.most, slack + rounded)) {
+    const auto allows = [&](double turned) {
+      return field.softStartAllows(turned, share, seen.towards, seen.most, slack + rounded);
+    };
+    // A shaft that turned on since leads it more than half a turn from there.
+    if (!seen.brakes && !allows(round) && !allows(value)) {
       fail(index,
            fmt::format("its {} is at {:.3f} after {:.3f} of its soft start, from {:.3f} to {:.3f}, asked "
                        "for {:.3f} to {:.3f}",
