@@ -64,6 +64,9 @@ class Fleet {
   [[nodiscard]] bool start(TickFunction one_tick);
 
   [[nodiscard]] std::uint64_t droppedFrames() const noexcept;
+  [[nodiscard]] std::size_t motors() const noexcept { return robot_->motors().size(); }
+  /// Frames of one deliver().
+  [[nodiscard]] std::size_t framesPerBus() const noexcept { return frames_.front().size(); }
 
  private:
   [[nodiscard]] std::unique_ptr<Robot> makeRobot(const Shape& shape);

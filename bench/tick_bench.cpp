@@ -1,7 +1,9 @@
 // Cost of a tick, for fleets of different size: see docs/performance.md. bench/table runs this program
 // and turns its figures into cost per frame and per motor.
 //   tick_bench [Google Benchmark's options]
-//   tick_bench --ticks N FLEET     N whole ticks and nothing else, for counting instructions from outside
+//   tick_bench --ticks N FLEET [full]     N whole ticks and nothing else, for counting instructions from
+//   outside;
+//                                         full: each with as many frames and setpoints as a tick takes
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -12,6 +14,9 @@
 #include <string_view>
 
 #include "app/subnormals.hpp"
+#include "bus/can_receiver.hpp"
+#include "daemon/exchange/orders.hpp"
+#include "daemon/interfaces/can_intake.hpp"
 #include "fleet.hpp"
 
 namespace rc10::bench {
@@ -47,6 +52,17 @@ void commandedTick(Fleet& fleet) {
   wholeTick(fleet);
 }
 
+// Frames of one bus that a drain takes.
+constexpr std::size_t kFramesPerTick = CanIntake::kMaxReads * CanReceiver::kBatch;
+
+// A flood on each bus, and clients that ask for all that a tick carries out.
+void fullTick(Fleet& fleet) {
+  prepare(fleet);
+  for (std::size_t frames = 0; frames < kFramesPerTick; frames += fleet.framesPerBus()) fleet.deliver();
+  for (std::size_t setpoints = 0; setpoints < kSetpointsPerTick; setpoints += fleet.motors()) fleet.command();
+  fleet.tick();
+}
+
 constexpr std::array<Part, 5> kParts{{
     {"prepare", prepare},
     {"receive", receive},
@@ -67,7 +83,7 @@ void measure(benchmark::State& state, const Shape& shape, const Part& part) {
   state.counters["motors"] = static_cast<double>(shape.motors());
 }
 
-int runTicks(std::uint64_t ticks, std::string_view name) {
+int runTicks(std::uint64_t ticks, std::string_view name, void (*one_tick)(Fleet&)) {
   const auto* const shape =
       std::find_if(kShapes.begin(), kShapes.end(), [name](const Shape& s) { return s.name == name; });
   if (shape == kShapes.end()) {
@@ -76,8 +92,8 @@ int runTicks(std::uint64_t ticks, std::string_view name) {
   }
   const auto fleet = std::make_unique<Fleet>(*shape);
   if (!fleet->start(wholeTick)) return 1;
-  for (std::uint64_t i = 0; i < ticks; ++i) wholeTick(*fleet);
-  return 0;
+  for (std::uint64_t i = 0; i < ticks; ++i) one_tick(*fleet);
+  return fleet->droppedFrames() == 0 ? 0 : 1;
 }
 
 }  // namespace
@@ -86,8 +102,9 @@ int runTicks(std::uint64_t ticks, std::string_view name) {
 int main(int argc, char** argv) {
   using namespace rc10::bench;
   rc10::flushSubnormals();  // as the scheduler's thread
-  if (argc == 4 && std::string_view(argv[1]) == "--ticks") {
-    return runTicks(std::strtoull(argv[2], nullptr, 10), argv[3]);
+  const bool full = argc == 5 && std::string_view(argv[4]) == "full";
+  if ((argc == 4 || full) && std::string_view(argv[1]) == "--ticks") {
+    return runTicks(std::strtoull(argv[2], nullptr, 10), argv[3], full ? fullTick : wholeTick);
   }
   for (const auto& part : kParts) {
     for (const auto& shape : kShapes) {
