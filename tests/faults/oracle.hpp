@@ -256,6 +256,7 @@ class Oracle {
                                                                          const MotorSnapshot& seen);
   void followAsked(Motor& motor, const MotorSnapshot& seen) const;
   static void followHold(TargetTrack& track, const MotorSnapshot& seen);
+  [[nodiscard]] static double followPlace(TargetTrack& track, const MotorSnapshot& seen);
   void judgeFirstAngle(std::size_t index, const MotorSnapshot& seen);
   void judgeField(std::size_t index, TargetTrack::Field which, const FieldSeen& seen);
   void judgeTargets(std::size_t index, const MotorSnapshot& seen);

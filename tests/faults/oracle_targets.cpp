@@ -362,6 +362,19 @@ void Oracle::judgeEfforts(std::size_t index, const MotorSnapshot& seen) {
   judgeField(index, Field::kPush, push);
 }
 
+// A Damiao drive tells its turns later than its angle: the first angle counts, as long as it went on from
+// there.
+double Oracle::followPlace(TargetTrack& track, const MotorSnapshot& seen) {
+  const double angle_deg = seen.feedback.total_angle_deg;
+  const double gap_s = static_cast<double>(seconds(seen.feedback.received - track.place_at)) + kMovedSeconds;
+  const double way_deg = std::fabs(static_cast<double>(seen.feedback.velocity_rpm)) * kDegPerSPerRpm * gap_s;
+  const bool goes_on = !track.turn_known && std::fabs(angle_deg - track.place_deg) <= 1.0 + 1.5 * way_deg;
+  if (!goes_on) track.first_deg = angle_deg;
+  track.place_deg = seen.feedback.samples > 0 ? angle_deg : std::numeric_limits<double>::quiet_NaN();
+  track.place_at = seen.feedback.received;
+  return track.first_deg;
+}
+
 // With both limits the first angle lies in the travel and half of the gap on each side, or the turn is not
 // known. A zero that was asked for and a homing give another one.
 void Oracle::judgeTurn(std::size_t index, const MotorSnapshot& seen) {
@@ -372,6 +385,7 @@ void Oracle::judgeTurn(std::size_t index, const MotorSnapshot& seen) {
       traits.absolute && !config.settings.zero_at_power_on &&
       (config.settings.gear_ratio <= 0.0 || config.settings.gear_ratio == traits.gear_ratio);
   const bool begins = seen.feedback.zeroed && !motor.track.turn_known;
+  const double first_deg = followPlace(motor.track, seen);
   motor.track.turn_known = seen.feedback.zeroed;
   const double travel_deg = config.shaping.angle_max_deg - config.shaping.angle_min_deg;
   if (!absolute || !std::isfinite(travel_deg)) return;
@@ -384,11 +398,12 @@ void Oracle::judgeTurn(std::size_t index, const MotorSnapshot& seen) {
   const double moved_deg =
       std::fabs(static_cast<double>(seen.feedback.velocity_rpm)) * kDegPerSPerRpm * kMovedSeconds;
   const double free_deg = (360.0 - travel_deg) / 2.0 - kDoubtDeg + kDoubtSlackDeg + moved_deg;
-  const double angle_deg = seen.feedback.total_angle_deg;
   ++visits_.turns;
-  require(index,
-          angle_deg >= config.shaping.angle_min_deg - free_deg &&
-              angle_deg <= config.shaping.angle_max_deg + free_deg,
+  const auto in_travel = [&](double angle_deg) {
+    return angle_deg >= config.shaping.angle_min_deg - free_deg &&
+           angle_deg <= config.shaping.angle_max_deg + free_deg;
+  };
+  require(index, in_travel(first_deg) || in_travel(seen.feedback.total_angle_deg),
           "it is on another turn than its travel");
 }
 

@@ -112,8 +112,11 @@ struct TargetTrack {
   double effort_before = 0.0;            ///< In its last frame, of a spring its sum,
   double value_before = 0.0;             ///< and as the snapshot told it.
   double speed_before = 0.0;
-  bool by_place = false;          ///< Its target is a place.
-  bool turn_known = false;        ///< Its angle has a reference.
+  bool by_place = false;    ///< Its target is a place.
+  bool turn_known = false;  ///< Its angle has a reference.
+  double first_deg = 0.0;   ///< Where its angle began, from where it went on.
+  double place_deg = std::numeric_limits<double>::quiet_NaN();  ///< Where it was last,
+  MonotonicTime place_at{};                                     ///< Time of that.
   Span places;                    ///< Where the shaft has been since its target began.
   std::uint64_t begin_ticks = 0;  ///< Left, in which a target may begin.
   int limited_ticks = 0;          ///< Left, in which a spring may come back from what limits had made of it.
