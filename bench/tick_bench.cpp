@@ -1,9 +1,9 @@
 // Cost of a tick, for fleets of different size: see docs/performance.md. bench/table runs this program
 // and turns its figures into cost per frame and per motor.
 //   tick_bench [Google Benchmark's options]
-//   tick_bench --ticks N FLEET [full]     N whole ticks and nothing else, for counting instructions from
-//   outside;
-//                                         full: each with as many frames and setpoints as a tick takes
+//   tick_bench --ticks N FLEET [full]
+//       N whole ticks and nothing else, for counting instructions from outside
+//       full: each with as many frames and setpoints as a tick takes
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
