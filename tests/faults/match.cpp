@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/angle.hpp"
 #include "app/target.hpp"
 #include "app/units.hpp"
 #include "app/vocabulary.hpp"
@@ -59,6 +60,11 @@ constexpr std::array<std::uint8_t, 10> kTroubleWeights{30, 18, 8, 8, 8, 8, 2, 8,
 constexpr auto kAftermath = 500ms;
 // From the operator's `enable` until every motor obeys.
 constexpr auto kBackWithin = 8s;
+// A person turns a shaft back so slowly, so hard and once in so long: longer than kBackWithin, which judges
+// the rest.
+constexpr double kBackRpm = 30.0;
+constexpr double kBackNm = 5.0;
+constexpr auto kBackOnceIn = 20s;
 // Share of the push that a motor withstands; and a spring that it cannot bend far.
 constexpr double kHelpShare = 0.1;
 constexpr float kStiffness = 20.0F;
@@ -134,8 +140,9 @@ void Match::tick() {
     if (std::any_of(answer.motors.begin(), answer.motors.end(),
                     [](Refusal refusal) { return refusal == Refusal::kMoving; }))
       all_well_ = {};
-    for (const auto& player : players_) {
+    for (auto& player : players_) {
       const auto refusal = answer.motors.at(player.motor);
+      if (refusal == Refusal::kTurnUnclear) turnBack(player);
       if (refusal != Refusal::kNone)
         refused += fmt::format(" {} {},", kRoles.at(player.motor).name, static_cast<int>(refusal));
     }
@@ -174,6 +181,15 @@ void Match::unplug(std::size_t index, Duration time) {
 
 void Match::unplugUnnoticed(std::size_t motor) {
   busOf(players_[motor]).silence(players_[motor].drive, true);
+}
+
+void Match::leadAstray(std::size_t motor) {
+  auto& player = players_[motor];
+  const double deg = wrapHalfTurn(robot_.snapshot().motors[motor].feedback.angle_deg);
+  unplug(motor, 3s);
+  busOf(player).turnByHand(
+      player.drive,
+      {.by_deg = kDegPerTurn / 2.0 - deg, .speed_rpm = kBackRpm, .torque_nm = kBackNm, .hold = 0s});
 }
 
 void Match::begin(Trouble trouble) {
@@ -273,6 +289,21 @@ void Match::reference() {
   if (lost.none()) return;
   note("reference set");
   order(Operation::kZero, lost);
+}
+
+// A hand has led the shaft out of its travel while its plug was out: rc10d rightly asks for a person
+// (safety.md).
+void Match::turnBack(Player& player) {
+  const auto now = robot_.now();
+  if (now < player.turned_back_until) return;
+  const double deg = wrapHalfTurn(robot_.snapshot().motors[player.motor].feedback.angle_deg);
+  busOf(player).turnByHand(player.drive,
+                           {.by_deg = -deg, .speed_rpm = kBackRpm, .torque_nm = kBackNm, .hold = 0s});
+  player.turned_back_until = now + kBackOnceIn;
+  all_well_ = {};
+  note("turned back");
+  lately_.push_back(
+      fmt::format("{}: {} is turned back from {:.0f} deg", tick_, kRoles.at(player.motor).name, deg));
 }
 
 // The operator: starts a match, ends it, and brings back what a plug or the button has stopped.

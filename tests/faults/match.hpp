@@ -33,6 +33,8 @@ class Match {
 
   /// For tests of the judge: this motor is unplugged, and the judge is not told.
   void unplugUnnoticed(std::size_t motor);
+  /// For its tests: this motor is unplugged, and meanwhile a hand leads it to the opposite of its zero.
+  void leadAstray(std::size_t motor);
 
  private:
   enum class Phase : std::uint8_t { kPit, kStart, kPlay };
@@ -66,6 +68,8 @@ class Match {
     MonotonicTime next_gap{};
     MonotonicTime unplugged_until{};
     MonotonicTime
+        turned_back_until{};  ///< A person has turned it back into its travel, and turns it no second time.
+    MonotonicTime
         excused_until{};  ///< It may stop, and be OFFLINE: its plug, or that of one it is grouped with.
     bool was_active = false;
     bool faulted = false;
@@ -81,6 +85,7 @@ class Match {
   void operate();
   void order(Operation operation, MotorSet motors = {});
   void reference();
+  void turnBack(Player& player);
   void judge();
   void nuisance(const std::string& what);
   [[nodiscard]] Player& somebody();

@@ -32,5 +32,16 @@ TEST(MatchTest, TheJudgeSeesAStopThatNobodyAskedFor) {
       << match.nuisances().front();
 }
 
+TEST(MatchTest, APersonTurnsBackAShaftThatAHandHasLedOutOfItsTravel) {
+  constexpr std::size_t kYaw = 5;
+  SeededChoices choices{7};
+  Match match{choices};
+  while (match.robotTime() < 4500ms) match.tick();  // it plays, and no trouble has come yet
+  match.leadAstray(kYaw);
+  while (match.robotTime() < 20s) match.tick();
+  EXPECT_EQ(match.times("turned back"), 1U);
+  EXPECT_TRUE(match.nuisances().empty()) << match.nuisances().front();
+}
+
 }  // namespace
 }  // namespace rc10::test::match_test
