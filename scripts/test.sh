@@ -15,8 +15,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 # Order of starting: a part that leaves cores free starts beside those before it.
 default=(unit kernel host pages)
-ci=("${default[@]}" lint web demo tidy faults soak)
-all=("${default[@]}" lint web demo clang faults vm package sanitize soak fuzz)
+ci=("${default[@]}" lint web demo tidy benchmarks faults soak)
+all=("${default[@]}" lint web demo clang benchmarks faults vm package sanitize soak fuzz)
 # Hours, or a Debian of its own: not among all.
 nightly=(arm64 fresh long_fuzz long_soak long_stream mutants registry)
 parts=(build "${all[@]}" tidy "${nightly[@]}")

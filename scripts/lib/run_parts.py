@@ -36,7 +36,7 @@ COUNTS = re.compile(r"^(\d+) passed, (\d+) failed, (\d+) skipped$")
 TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
 
 # These run what the dev build has made.
-TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web"}
+TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web", "benchmarks"}
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
 # `web` waits for a browser most of its time.
 CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}

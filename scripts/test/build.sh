@@ -1,5 +1,5 @@
 #!/bin/bash
-# the dev build: programs, tests and benchmarks compile without a warning
+# the dev build: programs and tests compile without a warning
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"

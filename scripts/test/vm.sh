@@ -8,7 +8,7 @@ need build test vm
 need_python
 export RC10_BUILD=$repo/build/dev
 
-if must_build dev; then
+if must_build dev && must_build dev benchmarks; then
     suite tests/vm "$repo/tests/vm/run"
     pytest_in tests/counted
 fi

@@ -12,8 +12,8 @@ namespace rc10::test {
 namespace {
 
 constexpr std::uint32_t kServoReport = 0x29;
-constexpr double kStiffnessMax = 500.0;
-constexpr double kDampingMax = 5.0;
+constexpr double kCubeMarsStiffnessMax = 500.0;
+constexpr double kCubeMarsDampingMax = 5.0;
 
 class CubemarsWire final : public Wire {
  public:
@@ -105,13 +105,13 @@ class CubemarsWire final : public Wire {
     };
     told_ = springOf({.position_rad = field(position, -range.position_rad, range.position_rad),
                       .velocity_rad_s = field(velocity, -range.velocity_rad_s, range.velocity_rad_s),
-                      .stiffness = field(stiffness, 0.0, kStiffnessMax),
-                      .damping = field(damping, 0.0, kDampingMax),
+                      .stiffness = field(stiffness, 0.0, kCubeMarsStiffnessMax),
+                      .damping = field(damping, 0.0, kCubeMarsDampingMax),
                       .torque_nm = field(torque, -range.torque_nm, range.torque_nm)},
                      {.position_rad = 2.0 * range.position_rad / 65535.0,
                       .velocity_rad_s = 2.0 * range.velocity_rad_s / 4095.0,
-                      .stiffness = kStiffnessMax / 4095.0,
-                      .damping = kDampingMax / 4095.0,
+                      .stiffness = kCubeMarsStiffnessMax / 4095.0,
+                      .damping = kCubeMarsDampingMax / 4095.0,
                       .torque_nm = 2.0 * range.torque_nm / 4095.0},
                      position_rad_, velocity_rad_s_);
   }

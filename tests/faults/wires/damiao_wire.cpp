@@ -16,8 +16,8 @@ constexpr std::uint8_t kSave = 0xAA;
 constexpr std::uint8_t kTimeoutRegister = 9;
 constexpr std::uint8_t kControlRegister = 10;
 constexpr std::uint8_t kLastRegister = 81;
-constexpr double kStiffnessMax = 500.0;
-constexpr double kDampingMax = 5.0;
+constexpr double kDamiaoStiffnessMax = 500.0;
+constexpr double kDamiaoDampingMax = 5.0;
 
 class DamiaoWire final : public Wire {
  public:
@@ -118,13 +118,13 @@ class DamiaoWire final : public Wire {
     told_ =
         springOf({.position_rad = onScale(bitsAt(frame, 0, 16), -scale.p_max_rad, scale.p_max_rad, 16),
                   .velocity_rad_s = onScale(bitsAt(frame, 16, 12), -scale.v_max_rad_s, scale.v_max_rad_s, 12),
-                  .stiffness = onScale(bitsAt(frame, 28, 12), 0.0, kStiffnessMax, 12),
-                  .damping = onScale(bitsAt(frame, 40, 12), 0.0, kDampingMax, 12),
+                  .stiffness = onScale(bitsAt(frame, 28, 12), 0.0, kDamiaoStiffnessMax, 12),
+                  .damping = onScale(bitsAt(frame, 40, 12), 0.0, kDamiaoDampingMax, 12),
                   .torque_nm = onScale(bitsAt(frame, 52, 12), -scale.t_max_nm, scale.t_max_nm, 12)},
                  {.position_rad = 2.0 * scale.p_max_rad / 65535.0,
                   .velocity_rad_s = 2.0 * scale.v_max_rad_s / 4095.0,
-                  .stiffness = kStiffnessMax / 4095.0,
-                  .damping = kDampingMax / 4095.0,
+                  .stiffness = kDamiaoStiffnessMax / 4095.0,
+                  .damping = kDamiaoDampingMax / 4095.0,
                   .torque_nm = 2.0 * scale.t_max_nm / 4095.0},
                  position_rad_, velocity_rad_s_);
   }

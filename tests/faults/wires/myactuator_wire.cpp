@@ -11,8 +11,8 @@ namespace {
 constexpr double kAngleRad = 12.5;
 constexpr double kVelocityRadS = 45.0;
 constexpr double kTorqueNm = 24.0;
-constexpr double kStiffnessMax = 500.0;
-constexpr double kDampingMax = 5.0;
+constexpr double kMyActuatorStiffnessMax = 500.0;
+constexpr double kMyActuatorDampingMax = 5.0;
 constexpr double kRadPerRaw = 0.01 * std::numbers::pi / 180.0;
 
 class MyactuatorWire final : public Wire {
@@ -96,13 +96,13 @@ class MyactuatorWire final : public Wire {
   void saidMotion(const CanFrame& frame) {
     told_ = springOf({.position_rad = onScale(bitsAt(frame, 0, 16), -kAngleRad, kAngleRad, 16),
                       .velocity_rad_s = onScale(bitsAt(frame, 16, 12), -kVelocityRadS, kVelocityRadS, 12),
-                      .stiffness = onScale(bitsAt(frame, 28, 12), 0.0, kStiffnessMax, 12),
-                      .damping = onScale(bitsAt(frame, 40, 12), 0.0, kDampingMax, 12),
+                      .stiffness = onScale(bitsAt(frame, 28, 12), 0.0, kMyActuatorStiffnessMax, 12),
+                      .damping = onScale(bitsAt(frame, 40, 12), 0.0, kMyActuatorDampingMax, 12),
                       .torque_nm = onScale(bitsAt(frame, 52, 12), -kTorqueNm, kTorqueNm, 12)},
                      {.position_rad = 2.0 * kAngleRad / 65535.0,
                       .velocity_rad_s = 2.0 * kVelocityRadS / 4095.0,
-                      .stiffness = kStiffnessMax / 4095.0,
-                      .damping = kDampingMax / 4095.0,
+                      .stiffness = kMyActuatorStiffnessMax / 4095.0,
+                      .damping = kMyActuatorDampingMax / 4095.0,
                       .torque_nm = 2.0 * kTorqueNm / 4095.0},
                      place_raw_ * kRadPerRaw, velocity_rad_s_);
   }
