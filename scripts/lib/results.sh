@@ -68,8 +68,9 @@ junit() {
 
 # ctest_in PRESET: every C++ test of a build.
 ctest_in() {
-    junit "ctest, $1" ctest --test-dir "$repo/build/$1" --parallel "${RC10_JOBS:-$(nproc)}" --output-on-failure \
-        --no-tests=error --output-junit
+    local tree=$repo/build/$1
+    suite "ctest, $1" "$repo/scripts/lib/junit.py" --folder "$tree/test-reports" \
+        ctest --test-dir "$tree" --parallel "${RC10_JOBS:-$(nproc)}" --output-on-failure --no-tests=error
 }
 
 # pytest_in FOLDER [OPTION...]

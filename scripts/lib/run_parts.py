@@ -38,8 +38,8 @@ TOLD = re.compile(r"^(SKIPPED|NOTE) .*", re.MULTILINE)
 # These run what the dev build has made.
 TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web", "benchmarks"}
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
-# `web` waits for a browser most of its time.
-CORES = {"host": 0, "web": 0, "pages": 1, "lint": 1, "vm": 1, "package": 1}
+# `web` waits for a browser most of its time; `pages` is short, and needs no build.
+CORES = {"host": 0, "web": 0, "pages": 0, "lint": 1, "vm": 1, "package": 1}
 ALL_CORES = len(os.sched_getaffinity(0))
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -72,12 +72,14 @@ class Part:
     def about(self) -> str:
         return (SCRIPTS / f"{self.name}.sh").read_text().splitlines()[1].removeprefix("# ")
 
-    def start(self) -> None:
+    def start(self, wanted: list[str]) -> None:
+        """Starts it as one of the parts that are wanted."""
         self.begin_s = time.monotonic()
         environment = {
             **{key: value for key, value in os.environ.items() if key != "RC10_BUILD"},
             "RC10_COSTS": str(LOGS / f"{self.name}.costs"),
             "RC10_JOBS": str(max(self.cores, 1)),
+            "RC10_PARTS": " ".join(wanted),
         }
         # Priority over parts that compute: a part that waits is woken in time.
         politely = ["nice", "-n", "5"] if self.cores else []
@@ -172,7 +174,8 @@ class Run:
 
     def __init__(self, names: list[str], budget: costs.Budget) -> None:
         self.budget = budget
-        self.waiting = [Part(name) for name in dict.fromkeys(names)]
+        self.names = list(dict.fromkeys(names))
+        self.waiting = [Part(name) for name in self.names]
         self.running: list[Part] = []
         self.done: list[Part] = []
         self.begin_s = time.monotonic()
@@ -191,7 +194,7 @@ class Run:
             if self.may_start(part):
                 self.waiting.remove(part)
                 self.running.append(part)
-                part.start()
+                part.start(self.names)
 
     def status_line(self) -> str:
         shown = []
@@ -248,7 +251,7 @@ class Run:
 
 
 def with_build(names: list[str]) -> list[str]:
-    """The dev build goes first, and alone, where something is tested with it."""
+    """The dev build goes first where something is tested with it."""
     needed = "build" not in names and TESTS_OF_DEV.intersection(names)
     return (["build"] if needed else []) + names
 
