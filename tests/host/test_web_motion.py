@@ -36,7 +36,7 @@ def now_us() -> int:
     return time.monotonic_ns() // 1000
 
 
-# Of a refusal where rc10d stood still when the server knocked: src/client/greeting.cpp.
+# Words of src/client/greeting.cpp, where rc10d stood still when the server knocked.
 STOOD_STILL = "does not answer"
 
 
