@@ -326,6 +326,48 @@ def ready_to_spin(page: Page, studio: Studio, card: Locator) -> None:
     go_to(page, "First spin")
 
 
+def hold_to_spin(
+    page: Page, studio: Studio, card: Locator, hold: Callable[[Locator], None]
+) -> None:
+    """A held button until the wheel is in the spin; where the machine stood still, once more."""
+    button = card.get_by_role("button", name="Hold to spin")
+    for _ in range(5):
+        expect(button).to_be_enabled()
+        hold(button)
+        try:
+            studio.daemon.wait_motor(
+                "wheel",
+                lambda m: m["acting"] == "target" and str(m["owner"]).startswith("web-"),
+                "it is in the spin",
+            )
+        except AssertionError:
+            if "(silence)" not in card.inner_text():
+                raise
+        else:
+            return
+        page.mouse.up()
+        page.keyboard.up(" ")
+        rests(studio, "wheel")
+        press(card, "Enable it alone")
+    raise AssertionError("five spins ended in silence")
+
+
+def hold_by_mouse(page: Page) -> Callable[[Locator], None]:
+    def hold(button: Locator) -> None:
+        button.hover()
+        page.mouse.down()
+
+    return hold
+
+
+def hold_by_key(page: Page) -> Callable[[Locator], None]:
+    def hold(button: Locator) -> None:
+        button.focus()
+        page.keyboard.down(" ")
+
+    return hold
+
+
 def spinning(page: Page, studio: Studio) -> None:
     """The wheel in its first spin, under a finger that stays."""
     page.locator("#tab-commission").click()
@@ -335,15 +377,7 @@ def spinning(page: Page, studio: Studio) -> None:
     expect(card).to_contain_text("no other motor can be enabled")
     refused = studio.daemon.ctl("enable", "elbow")
     assert "locked while" in refused.stdout + refused.stderr
-    button = card.get_by_role("button", name="Hold to spin")
-    expect(button).to_be_enabled()
-    button.hover()
-    page.mouse.down()
-    studio.daemon.wait_motor(
-        "wheel",
-        lambda m: m["acting"] == "target" and str(m["owner"]).startswith("web-"),
-        "it is in the spin",
-    )
+    hold_to_spin(page, studio, card, hold_by_mouse(page))
 
 
 ENDS: dict[str, Callable[[Page], object]] = {
@@ -374,10 +408,7 @@ def test_a_key_holds_it_too_and_its_release_ends_it(
 ) -> None:
     ready_to_spin(page, studio, card)
     press(card, "Enable it alone")
-    expect(card.get_by_role("button", name="Hold to spin")).to_be_enabled()
-    card.get_by_role("button", name="Hold to spin").focus()
-    page.keyboard.down(" ")
-    studio.daemon.wait_motor("wheel", lambda m: m["acting"] == "target", "it is in the spin")
+    hold_to_spin(page, studio, card, hold_by_key(page))
     page.keyboard.up(" ")
     rests(studio, "wheel")
     expect(card.get_by_text("Nothing was judged")).to_contain_text("(interrupted)")

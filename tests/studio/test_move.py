@@ -7,7 +7,7 @@ import threading
 from typing import TYPE_CHECKING
 
 import pytest
-from again import again_where_it_stood_still
+from again import again_where_it_let_go_by_itself
 from hostlib import Daemon
 from hostlib.daemon import CONFIG, Motor
 from playwright.sync_api import Browser, Locator, Page, expect
@@ -73,7 +73,7 @@ def watch(studio: Studio) -> Iterator[Watch]:
     assert running.end() <= LEASE_US
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_a_held_button_moves_the_motor_and_its_release_ends_that(
     moving: Page, studio: Studio, watch: Watch
 ) -> None:
@@ -90,7 +90,7 @@ def test_a_held_button_moves_the_motor_and_its_release_ends_that(
     rests(studio)
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_an_arrow_key_holds_it_too(moving: Page, studio: Studio, watch: Watch) -> None:
     moving.get_by_role("group", name="Hold a button").focus()
     moving.keyboard.down("ArrowRight")
@@ -142,7 +142,7 @@ ENDS: dict[str, tuple[Callable[[Page], object], str]] = {
 
 
 @pytest.mark.parametrize("end", list(ENDS))
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_it_is_let_go_by_all_that_is_not_holding(
     moving: Page, studio: Studio, watch: Watch, end: str
 ) -> None:
@@ -158,7 +158,7 @@ def test_it_is_let_go_by_all_that_is_not_holding(
     assert watch.oldest_us >= 0
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_a_key_is_let_go_wherever_the_focus_has_gone(
     moving: Page, studio: Studio, watch: Watch
 ) -> None:
@@ -179,7 +179,7 @@ def test_a_key_is_let_go_wherever_the_focus_has_gone(
     assert watch.oldest_us >= 0
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_only_the_first_button_of_a_mouse_holds(moving: Page, studio: Studio) -> None:
     button(moving).hover()
     moving.mouse.down(button="right")
@@ -193,7 +193,7 @@ def test_only_the_first_button_of_a_mouse_holds(moving: Page, studio: Studio) ->
     moving.mouse.up(button="right")
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_a_page_that_is_gone_lets_go(chromium: Browser, studio: Studio, watch: Watch) -> None:
     context = chromium.new_context()
     gone = context.new_page()
@@ -220,7 +220,7 @@ def test_a_page_that_stands_still_lets_go(moving: Page, studio: Studio, watch: W
     assert watch.oldest_us >= 0
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_of_two_pages_the_second_sees_who_has_the_motor(
     moving: Page, chromium: Browser, studio: Studio
 ) -> None:
@@ -241,7 +241,7 @@ def test_of_two_pages_the_second_sees_who_has_the_motor(
     context.close()
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_the_size_and_the_mode_are_those_that_were_entered(moving: Page, studio: Studio) -> None:
     jogs = moving.locator(".jogs")
     jogs.get_by_label("rpm").fill("35")

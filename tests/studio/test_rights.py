@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 
 import pytest
-from again import again_where_it_stood_still
+from again import again_where_it_let_go_by_itself
 from hostlib.daemon import CONFIG
 from playwright.sync_api import Browser, Page, expect
 
@@ -88,7 +88,7 @@ def test_hashes_of_tokens_are_shown_only_to_one_that_may_configure(
     page.context.close()
 
 
-@again_where_it_stood_still
+@again_where_it_let_go_by_itself
 def test_a_held_button_without_the_right_says_why_nothing_moves(
     chromium: Browser, studio: Studio
 ) -> None:

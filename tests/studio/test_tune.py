@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, Locator, Page, Playwright, expect
 from conftest import CHROMIUM, PATIENCE_MS, QUIET, Studio
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 # As docs/tuning.md has it; its feedback may be as old as a busy machine makes it.
 WHEEL = (
@@ -73,10 +73,10 @@ def stood_still(told: Locator) -> bool:
     return bool(re.search(r"\(silence\)|too busy", told.inner_text()))
 
 
-def runs_to(form: Locator, text: str) -> None:
+def runs_to(form: Locator, text: str, begin: Callable[[Locator], None] = start) -> None:
     """Starts a test, which ends so; one during which the machine stood still is run again."""
     for _ in range(5):
-        start(form)
+        begin(form)
         told = form.locator(".told")
         told.wait_for(timeout=3 * PATIENCE_MS)
         if not stood_still(told):
@@ -474,8 +474,7 @@ def test_a_test_is_run_on_a_phone_in_chinese(phone: Page, studio: Studio) -> Non
     form.get_by_label("反馈的最大年龄").fill("2000")
     form.get_by_label("本页最长的沉默").fill("1000")
     studio.daemon.must("enable", "wheel")
-    form.get_by_role("button", name="开始", exact=True).tap()
-    expect(form.locator(".told")).to_contain_text("完成")
+    runs_to(form, "完成", lambda form: form.get_by_role("button", name="开始", exact=True).tap())
     assert phone.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
@@ -547,9 +546,20 @@ def before_the_search(page: Page, form: Locator, studio: Studio) -> dict[str, fl
     before = gains_in_force(studio)
     form.get_by_label("lasts").fill("5")
     proposal = page.get_by_role("region", name="Proposal")
-    proposal.get_by_role("button", name="Search", exact=True).click()
-    # The first step is as it was.
-    eventually(lambda: gains_in_force(studio) != before, "other gains", 3 * PATIENCE_MS / 1000)
+    early = proposal.get_by_role("alert").filter(has_text="ended early")
+
+    def has_other_gains() -> bool:
+        return gains_in_force(studio) != before
+
+    for _ in range(5):  # again, if the machine stood still in the first step, which is as it was
+        proposal.get_by_role("button", name="Search", exact=True).click()
+        expect(early).to_have_count(0)
+        eventually(
+            lambda: has_other_gains() or early.count() > 0, "other gains", 3 * PATIENCE_MS / 1000
+        )
+        if has_other_gains():
+            break
+    assert has_other_gains()
     return before
 
 
