@@ -28,7 +28,7 @@ BY_ITSELF = re.compile("stood still|connection was lost|does not take this page"
 
 
 def let_go_by_itself(page: Page) -> Locator:
-    """What a page says of a hold that the machine has ended, until the next one."""
+    """Words of a page on a hold that the machine has ended; they stay until the next one."""
     return page.locator(".jogs [role=status]", has_text=BY_ITSELF)
 
 

@@ -294,7 +294,7 @@ def test_what_is_armed_can_be_disarmed(page: Page, panel: Locator) -> None:
     expect(page.locator(".jog.held")).to_be_visible()
     page.wait_for_function("document.querySelectorAll('.legend .number').length >= 3")
     page.mouse.up()
-    # What the page hears late must not be the step of the next one.
+    # A step that the page hears of late must not trigger the next one.
     page.wait_for_function(RESTS)
     # A capture takes a second: one that was under way would be there beside the next.
     step(page, panel)
