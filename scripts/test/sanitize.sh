@@ -3,7 +3,7 @@
 set -euo pipefail
 
 # GCC 12's ThreadSanitizer does not start where the kernel randomises addresses by more bits than it
-# expects. That concerns the build too: it runs the tests to list them.
+# expects.
 if [ -z "${RC10_FIXED_ADDRESSES:-}" ] && setarch -R true 2>/dev/null; then
     RC10_FIXED_ADDRESSES=yes exec setarch -R "$0" "$@"
 fi

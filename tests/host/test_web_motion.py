@@ -350,13 +350,13 @@ def test_a_second_test_of_a_page_waits_for_the_first(tests: Tester) -> None:
         ({"kind": "sweep", "to_hz": 90}, "0.05 to 50 Hz"),
     ],
 )
+@moves
 def test_a_test_without_sense_is_refused_before_anything_moves(
     web: Web, robot: Daemon, wanted: dict[str, object], told: str
 ) -> None:
     with web.page() as page:
         tests = Tester(page)
-        tests.start(**{**STEP, **PATIENT, **wanted})
-        assert told in page.wait("response")["message"]
+        assert told in tests.refusal(**{**STEP, **PATIENT, **wanted})
     assert robot.state()["motors"][0]["owner"] == ""
 
 

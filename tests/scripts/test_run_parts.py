@@ -47,6 +47,12 @@ def test_counts_are_those_of_the_last_line(write_parts: WriteParts) -> None:
     assert (part.passed, part.failed, part.skipped) == (3, 0, 1)
 
 
+def test_a_part_knows_which_parts_run_beside_it(write_parts: WriteParts) -> None:
+    count = """echo "$(echo "$RC10_PARTS" | wc -w) passed, 0 failed, 0 skipped\""""
+    write_parts(build=count, kernel=count)
+    assert [part.passed for part in run("build", "kernel").values()] == [2, 2]
+
+
 @pytest.mark.parametrize(
     "text",
     [
