@@ -30,12 +30,17 @@ while [ $# -gt 0 ]; do
         --seconds) seconds=${2:-} && shift ;;
         -h | --help) usage && exit ;;
         *)
-            echo "demo: no option '$1'$(did_you_mean "$1" --seconds --help)" >&2
+            meant=$(did_you_mean "$1" --seconds --help)
+            [[ ! $1 =~ ^[0-9]+$ ]] || meant="; did you mean --seconds $1?"
+            echo "demo: no option '$1'$meant" >&2
             usage >&2
             exit 2
             ;;
     esac
-    [[ $seconds =~ ^[0-9]{1,6}$ ]] || { usage >&2 && exit 2; }
+    [[ $seconds =~ ^[0-9]{1,6}$ ]] || {
+        echo "demo: --seconds takes a whole number of seconds, at most 999999, not '$seconds'" >&2
+        exit 2
+    }
     seconds=$((10#$seconds))
     shift
 done

@@ -7,6 +7,8 @@ set -euo pipefail
 # shellcheck source=scripts/lib/nearest.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lib/nearest.sh"
 
+# Also where packages have no manager to ask, which is told further below.
+machine=$(dpkg --print-architecture 2>/dev/null) || machine=amd64
 declare -A packages=(
     [build]="g++ cmake ninja-build pkg-config ccache git python3 python3-venv iproute2
         libyaml-cpp-dev libspdlog-dev libfmt-dev liblcm-dev liblcm-bin libexpected-dev
@@ -16,10 +18,10 @@ declare -A packages=(
     [languages]="make liblcm-java default-jdk-headless"
     [lint]="clang-16 clang-tidy-16 clang-format-16 libclang-rt-16-dev shellcheck systemd udev"
     [kernel]="linux-source-6.1 gcc make flex bison bc libelf-dev xz-utils mount can-utils"
-    [vm]="qemu-system-x86 linux-image-rt-amd64 linux-headers-rt-amd64 linux-source-6.1 make xz-utils busybox-static kmod file mount
+    [vm]="qemu-system-x86 linux-image-rt-$machine linux-headers-rt-$machine linux-source-6.1 make xz-utils busybox-static kmod file mount
         can-utils systemd udev valgrind"
     [web]="chromium fonts-noto-cjk"
-    [package]="dpkg-dev file fakeroot mmdebstrap lintian binutils mount"
+    [package]="dpkg-dev file fakeroot mmdebstrap uidmap lintian binutils mount"
 )
 groups=(build test languages lint kernel vm web package)
 
@@ -53,7 +55,9 @@ as_root() {
 }
 
 apt() {
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
+    # sudo forgets a proxy.
+    as_root env ${http_proxy:+"http_proxy=$http_proxy"} ${https_proxy:+"https_proxy=$https_proxy"} \
+        ${no_proxy:+"no_proxy=$no_proxy"} DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
 }
 
 list='' list_missing='' may_ask=''
@@ -79,7 +83,7 @@ mapfile -t absent < <(missing "${wanted[@]}" | sort -u)
 [ ${#absent[@]} -gt 0 ] || exit 0
 [ -z "$list_missing" ] || { printf '%s\n' "${absent[@]}" && exit; }
 # Modules that are built with the headers must fit the kernel: both of one version.
-[[ " ${absent[*]} " != *" linux-headers-rt-amd64 "* ]] || absent+=(linux-image-rt-amd64)
+[[ " ${absent[*]} " != *" linux-headers-rt-$machine "* ]] || absent+=("linux-image-rt-$machine")
 
 if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
     die "missing packages, and neither root nor sudo to install them: apt-get install ${absent[*]}"

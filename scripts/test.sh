@@ -17,7 +17,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 default=(unit kernel host pages)
 ci=("${default[@]}" lint web demo tidy benchmarks faults soak)
 all=("${default[@]}" lint web demo clang benchmarks faults vm package sanitize soak fuzz)
-# Hours, or a Debian of its own: not among all.
+# Long, a Debian of its own, or from the net: not among all.
 nightly=(arm64 fresh long_fuzz long_soak long_stream mutants registry)
 parts=(build "${all[@]}" tidy "${nightly[@]}")
 
@@ -26,12 +26,12 @@ about() {
 }
 
 usage() {
-    echo "usage: scripts/test.sh [PART...]"
+    echo "usage: scripts/test.sh [PART or set...]     default: default"
     local part
     for part in "${parts[@]}"; do
-        printf '  %-9s %s\n' "$part" "$(about "$part")"
+        printf '  %-11s %s\n' "$part" "$(about "$part")"
     done
-    printf '  %-9s %s\n' default "${default[*]}" ci "${ci[*]}" all "${all[*]}" nightly "${nightly[*]}"
+    printf '  %-11s %s\n' default "${default[*]}" ci "${ci[*]}" all "${all[*]}" nightly "${nightly[*]}"
     echo "Minutes of each set: CONTRIBUTING.md"
 }
 
@@ -47,7 +47,7 @@ for part in "${@:-default}"; do
         *)
             if [[ $part == *' '* || " ${parts[*]} " != *" $part "* ]]; then
                 echo "test.sh: no part '$part'$(did_you_mean "$part" "${parts[@]}" default ci all nightly)" >&2
-                usage >&2
+                echo "test.sh: scripts/test.sh --help lists them" >&2
                 exit 2
             fi
             wanted+=("$part")

@@ -35,9 +35,9 @@ if [ -L "$venv" ]; then
     echo "venv: $venv is a link: remove it, or say with RC10_VENV where the environment shall be" >&2
     exit 1
 fi
-# Making an environment empties its folder.
-if [ -n "$(ls -A "$venv" 2>/dev/null)" ] && [ ! -e "$venv/pyvenv.cfg" ]; then
-    echo "venv: $venv has files that are no Python environment: remove them, or name another folder with RC10_VENV" >&2
+# Making an environment empties its folder; one of ours has the file .inputs from its first moment.
+if [ -n "$(ls -A "$venv" 2>/dev/null)" ] && [ ! -e "$venv/.inputs" ]; then
+    echo "venv: $venv has files that this script did not make: remove them, or name another folder with RC10_VENV" >&2
     exit 1
 fi
 mkdir -p "$venv"
@@ -55,7 +55,9 @@ install() {
 }
 if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
     echo "venv: making $venv" >&2
-    "$base" -m venv --clear "$venv" >&2
+    find "$venv" -mindepth 1 -delete
+    : >"$venv/.inputs"
+    "$base" -m venv "$venv" >&2
     install "${client[@]}"
     # Its build tools are among the requirements.
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2

@@ -3,7 +3,8 @@
 
 junit.py REPORT COMMAND...            the path REPORT is appended to the command
 junit.py --folder FOLDER COMMAND...   the command's programs write their reports to this folder,
-                                      each NAME.xml, and NAME.unfinished until its end
+                                      each NAME.xml, and NAME.unfinished until its end;
+                                      FOLDER.names has the names
 """
 
 from __future__ import annotations
@@ -70,20 +71,38 @@ def run_to(report: Path, command: list[str]) -> tuple[int, list[ET.Element]]:
     return status, list(ET.parse(report).iter("testcase")) if report.exists() else []
 
 
-def unfinished(name: str) -> ET.Element:
-    case = ET.Element("testcase", name=f"{name}, which ended amidst its tests")
+def failure(name: str) -> ET.Element:
+    case = ET.Element("testcase", name=name)
     ET.SubElement(case, "failure")
     return case
 
 
+def cases_of(report: Path) -> list[ET.Element]:
+    """Those of GoogleTest that were run or are switched off; a list of tests is no report."""
+    cases = list(ET.parse(report).iter("testcase")) if report.exists() else []
+    return [case for case in cases if case.get("status") in ("run", "notrun")]
+
+
 def run_in(folder: Path, command: list[str]) -> tuple[int, list[ET.Element]]:
-    """Exit status and cases of a command whose programs write their reports to this folder."""
+    """Exit status and cases of a command whose programs write their reports to this folder.
+
+    Each does so in shards, PROGRAM.0, PROGRAM.1 and so on, of which some may have no test.
+    """
+    names = folder.with_suffix(".names").read_text().split()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     status = run(command)
-    reports = sorted(folder.glob("*.xml"))
-    cases = [case for report in reports for case in ET.parse(report).iter("testcase")]
-    return status, cases + [unfinished(left.stem) for left in sorted(folder.glob("*.unfinished"))]
+    cases, empty = [], {name.partition(".")[0] for name in names}
+    for name in names:
+        of_shard = cases_of(folder / f"{name}.xml")
+        cases += of_shard
+        if of_shard:
+            empty.discard(name.partition(".")[0])
+        if (folder / f"{name}.unfinished").exists():
+            cases.append(failure(f"{name}, which ended amidst its tests"))
+        elif not (folder / f"{name}.xml").exists():
+            cases.append(failure(f"{name}, which left no report"))
+    return status, cases + [failure(f"{program}, which has no test") for program in sorted(empty)]
 
 
 def tell(status: int, cases: list[ET.Element], command: list[str]) -> int:
@@ -98,6 +117,8 @@ def tell(status: int, cases: list[ET.Element], command: list[str]) -> int:
             print(f"SKIPPED {label(case)}: {why(case, skip)}")
         else:
             passed += 1
+    if status == 0 and failed:
+        status = 1
     if costs := os.environ.get("RC10_COSTS"):
         write_costs(costs, cases)
     if status != 0 and failed == 0:

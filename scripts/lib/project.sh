@@ -7,8 +7,9 @@ repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 
 # ccache: hits across clones in different folders.
 export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1
-# It fails each compilation where it cannot write.
-ccache_folder=${CCACHE_DIR:-${XDG_CACHE_HOME:-${HOME:-}/.cache}/ccache}
+# It fails each compilation where it cannot write. An old ~/.ccache stays its folder; without it the default is asked.
+ccache_folder=$(ccache --get-config cache_dir 2>/dev/null) \
+    || ccache_folder=${CCACHE_DIR:-${XDG_CACHE_HOME:-${HOME:-}/.cache}/ccache}
 if ! mkdir -p "$ccache_folder" 2>/dev/null || [ ! -w "$ccache_folder" ]; then export CCACHE_DISABLE=1; fi
 
 need() {
@@ -31,12 +32,13 @@ build() {
     [ $# -eq 0 ] || compile+=(--target "$@")
     compile+=("${build_options[@]}")
     echo "-- building $preset${*:+: $*}"
-    mkdir -p "$repo/build"
+    # As a condition, as most callers need it, it would go on after a line that fails.
+    mkdir -p "$repo/build" || return
     (
         cd "$repo" || return
         # Two builds in one tree would disturb each other.
-        exec 8>"build/.$preset.lock"
-        flock 8
+        { exec 8>"build/.$preset.lock"; } || return
+        flock 8 || return
         # One that was copied with its clone would build that one.
         if [ -e "build/$preset/CMakeCache.txt" ] \
             && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$repo" "build/$preset/CMakeCache.txt"; then

@@ -61,6 +61,16 @@ suite() {
     fi
 }
 
+# in_guests NAME COMMAND...: a suite whose guests are computers of x86.
+in_guests() {
+    if [ "$(uname -m)" = x86_64 ]; then
+        suite "$@"
+    else
+        echo "SKIPPED $1: its guests are computers of x86, this one is $(uname -m)"
+        skipped=$((skipped + 1))
+    fi
+}
+
 # junit NAME COMMAND...: a test runner that takes, as one more argument, where to write JUnit's XML.
 junit() {
     suite "$1" "$repo/scripts/lib/junit.py" "$scratch/report.xml" "${@:2}"
@@ -75,7 +85,7 @@ ctest_in() {
 
 # pytest_in FOLDER [OPTION...]
 pytest_in() {
-    junit "pytest, $1" env --chdir="$repo/$1" "$RC10_PYTHON" -m pytest -q -p no:cacheprovider \
+    junit "pytest, $1" env --chdir="$repo/$1" "$RC10_PYTHON" -m pytest -q -p no:cacheprovider --timeout=600 \
         "${@:2}" --junitxml
 }
 

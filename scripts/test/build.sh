@@ -8,8 +8,8 @@ need build test
 need_python
 
 # The kernel of the guests, beside it: make and Ninja each leave cores idle at their ends. Its tests tell what failed.
-case " ${RC10_PARTS:-} " in
-    *" kernel "* | *" faults "*)
+case "$(uname -m) ${RC10_PARTS:-} " in
+    x86_64*" kernel "* | x86_64*" faults "*)
         need kernel
         "$repo/tests/kernel/build-kernel" >/dev/null &
         ;;

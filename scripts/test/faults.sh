@@ -8,5 +8,5 @@ need build test kernel
 need_python
 export RC10_BUILD=$repo/build/dev
 
-if must_build dev; then suite tests/faults "$repo/tests/faults/run"; fi
+if must_build dev; then in_guests tests/faults "$repo/tests/faults/run"; fi
 finish

@@ -17,17 +17,17 @@ case $wanted in
         ;;
 esac
 
-need package
-root=$scratch/root
-clone=/srv/rc10d
-home=/root
-minutes=$scratch/minutes
-
 if [ "$(id -u)" -ne 0 ]; then
     echo "FAILED fresh: it makes a Debian with mounts of its own, and installs in it: run it as root"
     echo "0 passed, 1 failed, 0 skipped"
     exit 1
 fi
+
+need package
+root=$scratch/root
+clone=/srv/rc10d
+home=/root
+minutes=$scratch/minutes
 
 # A Debian of nothing but apt, and what this machine needs to reach the package archives.
 make_root() {

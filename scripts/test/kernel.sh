@@ -8,5 +8,5 @@ need build test kernel
 need_python
 export RC10_BUILD=$repo/build/dev
 
-if must_build dev; then suite tests/kernel "$repo/tests/kernel/run"; fi
+if must_build dev; then in_guests tests/kernel "$repo/tests/kernel/run"; fi
 finish

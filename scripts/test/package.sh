@@ -14,7 +14,7 @@ if must_build package; then
         suite tests/package/contents "$repo/tests/package/contents" "$packages"
         suite tests/package/wheel "$repo/tests/package/wheel" "$packages"
         suite tests/package/compile "$repo/tests/package/compile" "$packages"
-        suite tests/package/run "$repo/tests/package/run" "$packages"
+        in_guests tests/package/run "$repo/tests/package/run" "$packages"
     fi
 fi
 finish

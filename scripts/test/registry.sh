@@ -10,5 +10,5 @@ export RC10_BUILD=$repo/build/dev
 
 # Apart from the project's own, whose versions are others.
 "$repo/scripts/lib/pinned_venv" "$repo/build/registry" "$repo/tests/registry/requirements.txt"
-if must_build dev rc10-sim; then suite tests/registry "$repo/tests/kernel/run" "$repo"/tests/registry/test_*.py; fi
+if must_build dev rc10-sim; then in_guests tests/registry "$repo/tests/kernel/run" "$repo"/tests/registry/test_*.py; fi
 finish

@@ -9,7 +9,7 @@ need_python
 export RC10_BUILD=$repo/build/dev
 
 if must_build dev && must_build dev benchmarks; then
-    suite tests/vm "$repo/tests/vm/run"
+    in_guests tests/vm "$repo/tests/vm/run"
     pytest_in tests/counted
 fi
 finish

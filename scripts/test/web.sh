@@ -39,6 +39,6 @@ step "the editor, which only one part loads: at most 200 KiB, compressed" is_sma
 step "what saves as MCAP, loaded for that: at most 50 KiB, compressed" is_smaller_than 50 -name mcap.js
 step "it asks no other computer" asks_nobody_else
 if must_build dev rc10-web rc10d rc10ctl rc10-lcm; then
-    suite tests/studio env PYTHONPATH="$repo/tests/host" "$repo/tests/host/run" tests/studio
+    suite tests/studio "$repo/tests/host/run" tests/studio
 fi
 finish

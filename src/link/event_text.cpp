@@ -80,7 +80,7 @@ namespace {
 
 [[nodiscard]] const char* modeInputText(std::int32_t state) noexcept {
   switch (state) {
-    case 1: return "the mode input is closed: full speed and current again, within a second";
+    case 1: return "the mode input is closed: full speed and current again, within two seconds";
     case 2: return "reduced speed and current: the mode input is open";
     case 3:
       return "reduced speed and current: the mode input cannot be read: the chip is gone or does not answer";

@@ -116,6 +116,8 @@ Target SoloMotor::wanted() noexcept {
 Target SoloMotor::resolved() noexcept {
   const FrameKind kind = ordered();
   begins_ = std::exchange(told_, kind) != kind;
+  const bool led = kind == FrameKind::kCommand && this->target().mode == ControlMode::kCoast;
+  order_is_new_ = std::exchange(led_, led) != led || begins_;
   if (!obeying()) speed_scale_.reset();
   if (kind != FrameKind::kHold) holding_ = false;
   if (kind == FrameKind::kBrake) return Target{.mode = ControlMode::kBrake};
@@ -169,9 +171,10 @@ double SoloMotor::rpmWithinLimit(double output_rpm, double drive_limit_rpm) noex
   return rpm;
 }
 
-// The first frame of another order does not wait for its turn: an e-stop, the end of a target.
+// The first frame of another order does not wait for its turn: an e-stop, the end of a target, also in a
+// ramp.
 bool SoloMotor::due(const Tick& tick) const noexcept {
-  return begins_ || tick.index % divider_ == phase_ % divider_;
+  return order_is_new_ || tick.index % divider_ == phase_ % divider_;
 }
 
 }  // namespace rc10

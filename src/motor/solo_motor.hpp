@@ -147,6 +147,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   SpeedScaleCheck speed_scale_;
   FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
   bool begins_ = false;
+  bool led_ = false;           ///< By a fallback, in the last tick.
+  bool order_is_new_ = false;  ///< begins(), or led otherwise than in the last tick.
   bool holding_ = false;
   bool follows_angle_ = false;  ///< By the target of the last tick.
   double hold_deg_ = 0.0;

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bus/can_receiver.hpp"
@@ -292,7 +293,9 @@ TEST_P(SocketCanTest, SaysThatAnInterfaceIsMissingOrNoCan) {
 }
 
 std::vector<const char*> kernelsWithCan() {
-  if (::geteuid() == 0 && ::if_nametoindex("vcan0") != 0) return {"vcan"};
+  // Elsewhere shards of the program would make and remove the same interfaces side by side.
+  const char* guest = std::getenv("RC10_GUEST");
+  if (guest != nullptr && std::string_view{guest} == "kernel") return {"vcan"};
   return {};
 }
 

@@ -157,6 +157,34 @@ TEST_P(Family, ThatFallsSilentIsOfflineAndComesBackAtRest) {
   EXPECT_TRUE(enable()) << "and it can be enabled again";
 }
 
+// Drives that only answer were not asked in a pause, and run on in it.
+TEST_P(Family, AHoldAfterAPauseBeginsWhereTheShaftIs) {
+  auto config = configOf(GetParam());
+  auto& motor = config.buses[0].motors[0];
+  const bool holds = motor.traits().frames.hold != Provision::kUnsupported;
+  motor.fallback.on_timeout = holds ? FallbackAction::kHold : FallbackAction::kBrake;
+  VirtualRobot paused{config};
+  const auto angleDeg = [&] { return paused.simBus().drive(kMotor).physics().outputAngleDeg(); };
+  for (int i = 0; i < 4000 && paused.motor(kMotor).status != MotorStatus::kReady; ++i) paused.run(1);
+  for (int i = 0; i < 4 && paused.motor(kMotor).status != MotorStatus::kActive; ++i) {
+    paused.order(Operation::kEnable);
+    paused.run(1000);
+  }
+  ASSERT_EQ(paused.motor(kMotor).status, MotorStatus::kActive);
+  paused.hold(kMotor, {.mode = ControlMode::kVelocity, .value = GetParam().rpm}, 2000);
+  const double before_deg = angleDeg();
+  paused.tick(60);
+  const double after_deg = angleDeg();
+  ASSERT_GT(after_deg, before_deg + 5.0) << "it ran on";
+  paused.run(20);
+  if (holds) {
+    // Some milliseconds of way, and the step of an encoder.
+    const double held_deg = paused.robot().motors()[kMotor].motor->heldAngleDeg();
+    EXPECT_NEAR(held_deg, after_deg, 5.0 + 0.02 * GetParam().rpm) << "nothing pulls it back";
+  }
+  EXPECT_EQ(paused.motor(kMotor).acting, holds ? Acting::kHold : Acting::kBrake);
+}
+
 class RestartedFamily : public Family {};
 
 TEST_P(RestartedFamily, ARestartOfTheDriveEndsActive) {

@@ -58,6 +58,12 @@ int main(int argc, char** argv) {
   }
   std::printf("%s%llu ticks in %.1f s, %.0f a second\n", all.text().c_str(),
               static_cast<unsigned long long>(all.ticks), wall_s, static_cast<double>(all.ticks) / wall_s);
+  std::uint64_t active = 0;
+  for (const auto& [name, visited] : all.motors) active += visited.active;
+  if (active == 0) {
+    ++failed;
+    std::printf("FAILED no motor was ever ACTIVE, so that nothing was judged\n");
+  }
   // An hour reaches every motor, whatever the seed.
   if (const auto idle = all.idle(); jobs.hours >= 1.0 && !idle.empty()) {
     ++failed;

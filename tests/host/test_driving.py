@@ -107,7 +107,8 @@ def test_a_set_that_is_not_obeyed_fails_and_says_who_is_in_the_way(daemon: Daemo
         over = daemon.ctl("set", "wheel", "velocity", 30, "--for", "300ms", "--priority", 1)
         assert over.returncode == 0, over.stderr
         first.signal(signal.SIGINT)
-        assert first.wait() == 0
+        # The same, of the first.
+        assert first.wait() == 0 or "no valid command any more" in first.output
 
 
 @contextlib.contextmanager

@@ -85,7 +85,7 @@ def run_guest(
         )
         guests.append(guest)
         output, _ = guest.communicate()
-        counts = summary.count_file(file.stem, guest.returncode, report)
+        counts = summary.count_file(file.stem, guest.returncode, report, bool(pytest_options))
         left = Path(scratch, record) if record else None
         recorded = left.read_text() if left and left.exists() else ""
         found_out = Path(scratch, "records.jsonl")

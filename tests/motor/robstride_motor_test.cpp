@@ -68,6 +68,46 @@ TEST(RobStrideMotor, TheDividerThinsOutWhatIsSent) {
   EXPECT_FALSE(bench.tick(FrameKind::kRest).empty()) << "in tick 41";
 }
 
+// docs/safety.md: an e-stop begins its fallback in the next tick; a ramp is a command, as the target before
+// it.
+TEST(RobStrideMotor, ARampDoesNotWaitForItsTurn) {
+  auto settings = robStrideSettings("RS00");
+  settings.command_divider = 10;
+  Bench bench(settings);
+  bench.run();
+  const Target fast{.mode = ControlMode::kVelocity, .value = 60.0};
+  ASSERT_TRUE(bench.motor.setTarget(fast));
+  for (int i = 0; i < 25; ++i) bench.tick(FrameKind::kCommand, fast);
+  bench.motor.clearTarget();
+  const Target slower{.mode = ControlMode::kVelocity, .value = 59.0};
+  EXPECT_FALSE(bench.tick(FrameKind::kCommand, slower).empty()) << "in tick 26";
+  EXPECT_TRUE(bench.tick(FrameKind::kCommand, slower).empty());
+  ASSERT_TRUE(bench.motor.setTarget(fast));
+  EXPECT_FALSE(bench.tick(FrameKind::kCommand, fast).empty()) << "nor does the target after it";
+}
+
+// A velocity of 0 with the limit of before is a brake.
+TEST(RobStrideMotor, ACurrentLimitThatChangesIsSentInThreeTurns) {
+  for (const auto* control : {"velocity", "position"}) {
+    SCOPED_TRACE(control);
+    Bench bench(controlled(control));
+    bench.run();
+    const auto mode =
+        std::string_view{control} == "velocity" ? ControlMode::kVelocity : ControlMode::kTotalAngle;
+    const auto limitsIn = [&](FrameKind kind) {
+      int limits = 0;
+      for (const auto& frame : bench.tick(kind, {.mode = mode, .value = 1.0})) {
+        const auto index = readLittleEndian<std::uint16_t>(frame.payload(), 0);
+        if (typeOf(frame) == 18 && index == robstride::parameter::kCurrentLimit) ++limits;
+      }
+      return limits;
+    };
+    for (int i = 0; i < 10; ++i) limitsIn(FrameKind::kCommand);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(limitsIn(FrameKind::kIdle), 1) << i;
+    EXPECT_EQ(limitsIn(FrameKind::kIdle), 0);
+  }
+}
+
 // --- Feedback
 
 TEST(RobStrideMotor, TurnsAreCountedAcrossTheEndOfTheScale) {

@@ -30,6 +30,20 @@ def repo(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def test_a_clone_that_cannot_be_written_fails_at_once(repo: Path) -> None:
+    (repo / "build").touch()
+    done = subprocess.run(
+        ["bash", "-c", f". '{repo}/scripts/lib/project.sh'; build dev || echo failed"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PATH": f"{repo}/bin:{os.environ['PATH']}", "CALLS": f"{repo}/calls"},
+    )
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stdout.splitlines()[-1] == "failed"
+    assert not (repo / "calls").exists()
+
+
 def calls_of_a_build(repo: Path) -> list[str]:
     calls = repo / "calls"
     calls.write_text("")

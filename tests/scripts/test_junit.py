@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -40,8 +41,14 @@ def tell(*words: object, costs: Path | None = None) -> tuple[int, list[str]]:
     return done.returncode, done.stdout.splitlines()
 
 
+def reports_of(folder: Path, *names: str) -> Path:
+    """Folder for the reports of these shards."""
+    (folder / "reports.names").write_text("\n".join(names))
+    return folder / "reports"
+
+
 def test_reports_of_all_shards_are_counted(tmp_path: Path) -> None:
-    reports = tmp_path / "reports"
+    reports = reports_of(tmp_path, "a", "b")
     (tmp_path / "report").write_text(CASES)
     copies = "".join(f"cp '{tmp_path}/report' '{reports}/{name}.xml'; " for name in "ab")
     costs = tmp_path / "costs"
@@ -55,23 +62,59 @@ def test_reports_of_all_shards_are_counted(tmp_path: Path) -> None:
 
 
 def test_reports_of_an_earlier_run_do_not_count(tmp_path: Path) -> None:
-    reports = tmp_path / "reports"
+    reports = reports_of(tmp_path, "a.0")
     reports.mkdir()
-    (reports / "a.xml").write_text(CASES)
+    (reports / "a.0.xml").write_text(CASES)
     status, said = tell("--folder", reports, runner(tmp_path, "exit 0"))
     assert status == 1
-    assert said[-2:] == ["FAILED runner ran no test", "0 passed, 1 failed, 0 skipped"]
+    assert "FAILED a.0, which left no report" in said
+    assert said[-1] == "0 passed, 2 failed, 0 skipped"
+
+
+def test_a_shard_without_a_report_has_failed(tmp_path: Path) -> None:
+    """As where a program ends with status 0 before its tests begin."""
+    reports = reports_of(tmp_path, "a.0", "a.1")
+    (tmp_path / "report").write_text(CASES.replace("<failure", "<properties"))
+    does = f"cp '{tmp_path}/report' '{reports}/a.0.xml'"
+    status, said = tell("--folder", reports, runner(tmp_path, does))
+    assert status == 1
+    assert "FAILED a.1, which left no report" in said
+
+
+def test_a_shard_may_be_empty_and_a_program_may_not(tmp_path: Path) -> None:
+    reports = reports_of(tmp_path, "a.0", "a.1", "b.0", "b.1")
+    (tmp_path / "report").write_text(CASES.replace("<failure", "<properties"))
+    (tmp_path / "none").write_text("<testsuites/>")
+    empty = "".join(f"cp '{tmp_path}/none' '{reports}/{n}.xml'; " for n in ("a.1", "b.0", "b.1"))
+    does = f"{empty} cp '{tmp_path}/report' '{reports}/a.0.xml'"
+    status, said = tell("--folder", reports, runner(tmp_path, does))
+    assert status == 1
+    assert [line for line in said if "FAILED" in line] == ["FAILED b, which has no test"]
+
+
+def test_a_list_of_tests_is_no_report(tmp_path: Path) -> None:
+    """GTEST_LIST_TESTS writes one, without a status."""
+    reports = reports_of(tmp_path, "a.0")
+    listed = re.sub(
+        ' status="[a-z]+" result="[a-z]+"', "", CASES.replace("<failure", "<properties")
+    )
+    (tmp_path / "report").write_text(listed)
+    status, _ = tell(
+        "--folder", reports, runner(tmp_path, f"cp '{tmp_path}/report' '{reports}/a.0.xml'")
+    )
+    assert status == 1
 
 
 def test_a_program_that_ends_amidst_its_tests_has_failed_whatever_its_status(
     tmp_path: Path,
 ) -> None:
-    reports = tmp_path / "reports"
+    reports = reports_of(tmp_path, "a", "b.2", "b.1")
     (tmp_path / "report").write_text(CASES.replace("<failure", "<properties"))
-    does = f"touch '{reports}/b.2.unfinished'; cp '{tmp_path}/report' '{reports}/a.xml'"
+    copies = "".join(f"cp '{tmp_path}/report' '{reports}/{name}.xml'; " for name in ("a", "b.1"))
+    does = f"{copies} touch '{reports}/b.2.unfinished'"
     _, said = tell("--folder", reports, runner(tmp_path, does))
     assert "FAILED b.2, which ended amidst its tests" in said
-    assert said[-1] == "2 passed, 1 failed, 2 skipped"
+    assert said[-1] == "4 passed, 1 failed, 4 skipped"
 
 
 def test_a_status_without_a_failure_is_a_failure(tmp_path: Path) -> None:

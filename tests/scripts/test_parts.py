@@ -56,6 +56,12 @@ def test_a_part_says_what_packages_it_needs(part: str) -> None:
     assert output_of("install-deps.sh", "--list", *needs[0].split())
 
 
+@pytest.mark.parametrize("part", NAMES)
+def test_a_part_ends_with_its_counts(part: str) -> None:
+    """Without them those of its last suite would be taken for its own."""
+    assert text_of(part).rstrip().endswith("finish")
+
+
 def test_a_part_needs_what_the_part_does_that_it_ends_as() -> None:
     for part in NAMES:
         needs = set(re.findall(r"^need (.+)$", text_of(part), re.MULTILINE))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 from pathlib import Path
 
@@ -72,3 +73,23 @@ def test_a_function_fails_at_its_first_line_that_fails() -> None:
         assert (done.returncode, done.stderr) == (1, "")
         assert "goes on" not in done.stdout
         assert done.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
+
+
+def test_guests_of_another_processor_are_skipped(tmp_path: Path) -> None:
+    """As on a Raspberry Pi: a skip, which is told, and no failure."""
+    uname = tmp_path / "uname"
+    uname.write_text("#!/bin/sh\necho aarch64\n")
+    uname.chmod(0o755)
+    done = subprocess.run(
+        [
+            "bash",
+            "-ec",
+            f". '{REPO}/scripts/lib/results.sh'; in_guests g false; suite s sh -c \"{OK}\"; finish",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"},
+    )
+    assert "SKIPPED g: its guests are computers of x86, this one is aarch64" in done.stdout
+    assert done.stdout.splitlines()[-1] == "3 passed, 0 failed, 1 skipped"

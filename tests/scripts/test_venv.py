@@ -98,14 +98,26 @@ def test_what_is_there_is_not_asked_for_again(environment: Environment) -> None:
     assert environment.make("client") == [], "all has it"
 
 
-def test_a_folder_with_other_files_is_not_emptied(environment: Environment, tmp_path: Path) -> None:
-    thesis = tmp_path / "venv" / "thesis.tex"
-    thesis.parent.mkdir()
-    thesis.write_text("years of work")
+@pytest.mark.parametrize("name", ["thesis.tex", "pyvenv.cfg"])
+def test_a_folder_of_somebody_else_is_not_emptied(
+    name: str, environment: Environment, tmp_path: Path
+) -> None:
+    """Also an environment that its owner made for other work."""
+    file = tmp_path / "venv" / name
+    file.parent.mkdir()
+    file.write_text("years of work")
     with pytest.raises(subprocess.CalledProcessError) as refused:
         environment.make("client")
-    assert "has files that are no Python environment" in refused.value.stderr
-    assert thesis.read_text() == "years of work"
+    assert "has files that this script did not make" in refused.value.stderr
+    assert file.read_text() == "years of work"
+
+
+def test_one_that_was_interrupted_is_made_anew(environment: Environment, tmp_path: Path) -> None:
+    environment.make("client")
+    (tmp_path / "venv" / ".inputs").write_text("")
+    (tmp_path / "venv" / "half").touch()
+    assert environment.make("client") == [asked(CLIENT), ITSELF]
+    assert not (tmp_path / "venv" / "half").exists()
 
 
 def test_tests_and_tools_need_all(environment: Environment) -> None:

@@ -18,6 +18,12 @@ REPO = Path(__file__).resolve().parents[2]
         ("test.sh gripper", "test.sh: no part 'gripper'\n"),
         ("install-deps.sh biuld", "install-deps: no group 'biuld'; did you mean build?"),
         ("demo.sh --second 3", "demo: no option '--second'; did you mean --seconds?"),
+        ("demo.sh 10", "demo: no option '10'; did you mean --seconds 10?"),
+        (
+            "demo.sh --seconds abc",
+            "--seconds takes a whole number of seconds, at most 999999, not 'abc'",
+        ),
+        ("demo.sh --seconds", "--seconds takes a whole number of seconds, at most 999999, not ''"),
         ("package.sh --am64", "package: no option '--am64'; did you mean --arm64?"),
         ("venv.sh clent", "venv: no part 'clent': usage: scripts/venv.sh [client]"),
         ("web.sh chek", "web: no part 'chek': usage: scripts/web.sh [check]"),

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from hostlib.daemon import ARM, REPO
+from hostlib.stalls import stood_still_since
 from playwright.sync_api import (
     Locator,
     Page,
@@ -113,6 +114,7 @@ def held(
 ) -> None:
     """A held button, until the test ends; one during which the machine stood still is run again."""
     for _ in range(5):
+        begin_s = time.monotonic()
         press(card, "Enable it alone")
         button = card.get_by_role("button", name=label)
         expect(button).to_be_enabled()
@@ -125,16 +127,21 @@ def held(
         shown = card.inner_text()
         if "(silence)" not in shown and NOT_JUDGED not in shown:
             break
+        if not stood_still_since(begin_s, label):
+            break
         before_again()
     expect(told(card)).to_contain_text(words)
 
 
 def turned_by_hand(studio: Studio, card: Locator, motor: str) -> None:
     for _ in range(5):
+        begin_s = time.monotonic()
         press(card, "Begin")
         by_hand(studio, card, motor, 360)
         press(card, "The mark is back")
-        if NOT_JUDGED not in told(card).inner_text():
+        if NOT_JUDGED not in told(card).inner_text() or not stood_still_since(
+            begin_s, "a turn by hand"
+        ):
             break
 
 
@@ -142,9 +149,10 @@ def both_ends(card: Locator, ends: Callable[[], None], zero: Callable[[], None])
     """Takes both ends; a machine that stood still loses the zero, and with it both: then anew."""
     take = card.get_by_role("button", name="Take both")
     for _ in range(5):
+        begin_s = time.monotonic()
         with contextlib.suppress(StaysDisabled):
             ends()
-        if take.is_enabled():
+        if take.is_enabled() or not stood_still_since(begin_s, "both ends"):
             break
         zero()
     take.click()
@@ -332,6 +340,7 @@ def hold_to_spin(
     """A held button until the wheel is in the spin; where the machine stood still, once more."""
     button = card.get_by_role("button", name="Hold to spin")
     for _ in range(5):
+        begin_s = time.monotonic()
         expect(button).to_be_enabled()
         hold(button)
         try:
@@ -342,6 +351,8 @@ def hold_to_spin(
             )
         except AssertionError:
             if "(silence)" not in card.inner_text():
+                raise
+            if not stood_still_since(begin_s, "a spin"):
                 raise
         else:
             return

@@ -79,7 +79,7 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   }
   unheard_ = age;
   pause_forgiven_ = false;
-  on_when_heard_ = isOn(status_);
+  on_when_heard_ = isOn(status_) || fallback_.acts();
   return !bus_.held;
 }
 
@@ -178,6 +178,8 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   const bool too_fast = reduced_.any() && tooFastWhenReduced(reduced, moves, tick);
   if (!moves) {
     guard_.reset();
+    // Limits that a drive is told while it is enabled are already those of reduced mode.
+    if (reduced_.any()) motor_.derate(reduced_.effortShare());
     // Before its drive answers its group may let go of it, and its fallback goes on.
     if (status_ != MotorStatus::kEnabling || !guard_.tooHot(motor_.feedback())) return false;
     fault_ = FaultCode::kOverheated;
@@ -233,7 +235,10 @@ bool Axis::lapses(const Tick& tick) noexcept {
 
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
-  const auto kind = frameKind(robot);
+  auto kind = frameKind(robot);
+  // The place of before a pause is not where the shaft is: a hold begins at what is measured after it.
+  if (kind == FrameKind::kHold && motor_.ordered() != FrameKind::kHold && !fresh(tick))
+    kind = FrameKind::kIdle;
   if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
     shaper_.reset();
@@ -349,7 +354,7 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
     const bool asked = isDisable(event) || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;
     beginFallback(action, asked ? Fallback::Until::kStandstill : Fallback::Until::kEnded,
-                  event == MotorEvent::kEstop, tick);
+                  robot == RobotStatus::kEstop && event == MotorEvent::kEstop, tick);
   }
   // Without feedback there is nothing to brake by.
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) fallback_.end();

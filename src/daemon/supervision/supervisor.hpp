@@ -177,7 +177,8 @@ class Supervisor {
   bool estop_asked_ = false;     ///< In this tick, until decide().
   bool estop_in_force_ = false;  ///< Since kRun an e-stop has come, before the end of the program or in it.
   MonotonicTime estop_began_{};  ///< Time of the tick in which one began.
-  bool reduced_ = false;         ///< The mode input is open, or was since the last tick.
+  bool reduced_ = false;         ///< The mode input is open, or was a moment ago.
+  MonotonicTime mode_opened_{};  ///< Time of the last tick in which it was open.
   MonotonicTime client_heard_{};
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;

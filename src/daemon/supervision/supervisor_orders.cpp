@@ -6,6 +6,13 @@
 #include "daemon/supervision/supervisor.hpp"
 
 namespace rc10 {
+namespace {
+
+// A mode input that flutters, as a loose wire does, counts as open: neither the way down nor the monitored
+// time of reduced mode begins anew each time.
+constexpr Duration kSteadilyClosed = std::chrono::milliseconds{500};
+
+}  // namespace
 
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
   const auto contact = link_.estop_contact.look(tick.dt_s);
@@ -13,7 +20,8 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   if (contact.opened) estop({StopCause::kInput}, tick);
   const auto mode = link_.mode_contact.look(tick.dt_s);
   if (mode.news) report(modeInputEvent(*mode.news, tick.now));
-  reduced_ = mode.opened;
+  if (mode.opened) mode_opened_ = tick.now;
+  reduced_ = mode.opened || (reduced_ && tick.now - mode_opened_ < kSteadilyClosed);
   if (link_.estop.exchange(false, std::memory_order_acquire))
     estop({StopCause::kRequest, link_.estop_client.read()}, tick);
   if (link_.estop_datagram.exchange(false, std::memory_order_acquire))

@@ -32,6 +32,8 @@ constexpr double kFarthestCountedRad = 1e5;
 constexpr Duration kReadPeriod = std::chrono::milliseconds{40};
 // A limit that got lost on the way is repeated.
 constexpr Duration kLimitPeriod = std::chrono::milliseconds{100};
+// A new one at once: a velocity of 0 without the limit of 0 behind it is a brake.
+constexpr int kLimitRepeats = 3;
 // Gains of a motor for which none are configured: full torque at half a radian and at 5 rad/s. Chosen.
 constexpr double kStiffnessPerTorque = 2.0;
 constexpr double kDampingPerStiffness = 0.035;
@@ -249,9 +251,9 @@ std::size_t RobStride_Motor::packReference(const Tick& tick, std::span<CanFrame>
     case RobstrideControl::kVelocity: out[0] = codec_.write(parameter::kVelocityRef, reference_.value); break;
     case RobstrideControl::kPosition: out[0] = codec_.write(parameter::kPositionRef, reference_.value); break;
   }
-  const bool limit_due =
-      limit_sent_a_ != reference_.current_limit_a || tick.now - limit_sent_at_ >= kLimitPeriod;
-  if (!limit_due) return 1;
+  if (limit_sent_a_ != reference_.current_limit_a) limit_repeats_ = kLimitRepeats;
+  if (limit_repeats_ == 0 && tick.now - limit_sent_at_ < kLimitPeriod) return 1;
+  limit_repeats_ = std::max(limit_repeats_ - 1, 0);
   // After the reference: it is never followed before it is the right one.
   out[1] = codec_.write(parameter::kCurrentLimit, reference_.current_limit_a);
   limit_sent_a_ = reference_.current_limit_a;

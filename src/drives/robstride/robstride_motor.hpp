@@ -111,6 +111,7 @@ class RobStride_Motor : public SoloMotor {
   double brake_rad_ = 0.0;  ///< Place of the brake by the count of the drive.
   float limit_sent_a_ = -1.0F;
   MonotonicTime limit_sent_at_{};
+  int limit_repeats_ = 0;  ///< So many turns still send it.
   MonotonicTime read_at_{};
 };
 

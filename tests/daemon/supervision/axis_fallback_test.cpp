@@ -111,6 +111,40 @@ TEST_F(FallbackTest, TheFirstDisableInTheTickOfAnEstopLetsGoOfNothing) {
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kHold);
 }
 
+// Its hold ended with its feedback, and it may fall.
+TEST_F(FallbackTest, AnEstopIsNotClearedWhileALoadThatItHeldIsNotHeard) {
+  start({.on_estop = FallbackAction::kHold}, 1.0F);
+  estop();
+  robot->run(1000);
+  ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
+  ASSERT_LT(std::fabs(rpm()), 2.0F);
+  robot->simBus().silence(kLeft, true);
+  robot->run(100);
+  ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kOffline);
+  EXPECT_EQ(robot->order(Operation::kClear).motors[kLeft], Refusal::kMayTurn);
+}
+
+// The brake of a disable ends at standstill, as docs/configuration.md says of on_disable.
+TEST_F(FallbackTest, ABrakeOfTheProgramsEndIsThatOfADisable) {
+  const auto ticksOf = [&](auto stop) {
+    start({.on_disable = FallbackAction::kBrake, .brake_max = 100ms});
+    stop();
+    int ticks = 0;
+    for (; ticks < 5000 && robot->motor(kLeft).acting != Acting::kNothing; ++ticks) {
+      robot->tick();
+      EXPECT_NE(robot->motor(kLeft).acting, Acting::kDamp) << "only an e-stop bounds a brake";
+    }
+    return ticks;
+  };
+  const int disabled = ticksOf([&] { robot->order(Operation::kDisable); });
+  const int ended = ticksOf([&] {
+    robot->scheduler().beginStop();
+    robot->tick();
+  });
+  EXPECT_GT(disabled, 300);
+  EXPECT_NEAR(ended, disabled, 5);
+}
+
 TEST_F(FallbackTest, AnEstopIsNotClearedWhileARampLeads) {
   start({.on_estop = FallbackAction::kRamp, .ramp = 20s});
   estop();
