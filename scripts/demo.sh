@@ -78,7 +78,7 @@ prepare() {
         in_background "$here/web.sh" >"$page_log" 2>&1
         page_maker=$pid
         build_shows_files=yes
-        progress "demo: compiling rc10d" 60 build release rc10d rc10-lcm rc10ctl rc10-web || die "the build failed"
+        progress "demo: compiling rc10d" 75 build release rc10d rc10-lcm rc10ctl rc10-web || die "the build failed"
     fi
     [ -x "$build_tree/bin/rc10d" ] || die "no rc10d in $build_tree/bin"
     progress "demo: installing the Python client" 10 wait "$client_maker" \

@@ -65,7 +65,9 @@ mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here
 if [ -n "$("$here/install-deps.sh" --missing "${groups[@]}")" ]; then
     # run_parts.py says it as well, but Python is among the packages.
     cold_s=$(sed -n "/\"$name\": {/,/}/s/.*\"cold_s\": \([0-9]*\).*/\1/p" "$here/test/budget.json")
-    echo "rc10d's tests: ${wanted[*]}.${cold_s:+ About $(as_minutes "$cold_s") on 2 cores, with the Debian packages, which come first.}"
+    how_long="How long they take: CONTRIBUTING.md."
+    [ -z "$cold_s" ] || how_long="About $(as_minutes "$cold_s") on 2 cores, with the Debian packages, which come first."
+    echo "rc10d's tests: ${wanted[*]}. $how_long"
 fi
 progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
 exec /usr/bin/python3 "$here/lib/run_parts.py" --name "$name" "${wanted[@]}"

@@ -266,8 +266,8 @@ def expected(names: list[str], chosen: str, budget: costs.Budget) -> str:
             f" {as_minutes(took.warm_s)} afterwards."
         )
     parts = [budget.parts[name] for name in dict.fromkeys(names) if name in budget.parts]
-    if not parts or len(parts) < len(set(names)):
-        return ""
+    if len(parts) < len(set(names)):
+        return " How long they take: CONTRIBUTING.md."
     cpu_s = sum(part.cpu_s for part in parts)
     # The build goes alone; beside others no run is shorter than its longest part.
     alone = budget.parts["build"] if "build" in names else costs.PartCost(0, 0)

@@ -63,8 +63,10 @@ class Oracle {
   }
   /// The mode input in this tick.
   void modeInput(bool open) {
-    if (open && !mode_open_) mode_open_since_ = now_;
-    mode_open_ = open;
+    // One that flutters counts as open (docs/gpio.md); half a second, less some ticks.
+    const bool was_open = now_ - mode_last_open_ < std::chrono::milliseconds{490};
+    if (open && !was_open) mode_open_since_ = now_;
+    mode_open_ = open || was_open;
     if (open) mode_last_open_ = now_;
   }
   void stopBegun() { stop_asked_ = true; }

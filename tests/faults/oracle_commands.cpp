@@ -26,7 +26,7 @@ constexpr Duration kSettled = 290ms;
 // Time beyond `reduced_within_ms` for a drive that gets commands in some ticks only.
 constexpr Duration kReducedSlack = 100ms;
 // Time in which speed and effort come back when the mode input is closed (docs/gpio.md), and some.
-constexpr Duration kFullAgain = 1200ms;
+constexpr Duration kFullAgain = 1700ms;
 
 // An angle may be so far beyond a soft limit: rounding, and what the shaft has moved since the sample.
 constexpr double kAngleSlackDeg = 1.0;

@@ -281,7 +281,9 @@ def test_a_run_says_at_the_start_how_long_it_will_take(monkeypatch: pytest.Monke
     monkeypatch.setattr(run_parts, "ALL_CORES", 64)
     alone = run_parts.greeting(["build", "clang"], "all", budget)
     assert "about 3:20 on" in alone, "the build, then the longest"
-    assert "about" not in run_parts.greeting(["build", "fresh"], "nightly", budget)
+    on_request = run_parts.greeting(["build", "fresh"], "nightly", budget)
+    assert "about" not in on_request
+    assert "How long they take: CONTRIBUTING.md" in on_request
 
 
 def test_each_set_knows_how_long_it_will_take() -> None:
