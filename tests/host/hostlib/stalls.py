@@ -51,7 +51,7 @@ class StallWitness(threading.Thread):
 
 
 WITNESS = StallWitness()
-# Of this process, and of those of pytest-xdist.
+# Tests of this process, and of those of pytest-xdist.
 BEGUN_ANEW: list[str] = []
 FROM_WORKER = "begun anew"
 
