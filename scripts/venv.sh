@@ -35,15 +35,15 @@ if [ -L "$venv" ]; then
     echo "venv: $venv is a link: remove it, or say with RC10_VENV where the environment shall be" >&2
     exit 1
 fi
+mkdir -p "$venv"
+venv=$(cd "$venv" && pwd -P)
+exec 9<"$venv"
+flock 9
 # Making an environment empties its folder; one of ours has the file .inputs from its first moment.
 if [ -n "$(ls -A "$venv" 2>/dev/null)" ] && [ ! -e "$venv/.inputs" ]; then
     echo "venv: $venv has files that this script did not make: remove them, or name another folder with RC10_VENV" >&2
     exit 1
 fi
-mkdir -p "$venv"
-venv=$(cd "$venv" && pwd -P)
-exec 9<"$venv"
-flock 9
 client_hash=$(inputs "${client[@]}") all_hash=$(inputs "${client[@]}" "${all[@]}")
 made_from=$(cat "$venv/.inputs" 2>/dev/null || true)
 pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
@@ -55,8 +55,8 @@ install() {
 }
 if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
     echo "venv: making $venv" >&2
-    find "$venv" -mindepth 1 -delete
     : >"$venv/.inputs"
+    find "$venv" -mindepth 1 ! -path "$venv/.inputs" -delete
     "$base" -m venv "$venv" >&2
     install "${client[@]}"
     # Its build tools are among the requirements.

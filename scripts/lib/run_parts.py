@@ -40,7 +40,10 @@ TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web", "benchm
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
 # `web` waits for a browser most of its time; `pages` is short, and needs no build.
 CORES = {"host": 0, "web": 0, "pages": 0, "lint": 1, "vm": 1, "package": 1}
-ALL_CORES = min(len(os.sched_getaffinity(0)), int(os.environ.get("RC10_JOBS") or sys.maxsize))
+JOBS = os.environ.get("RC10_JOBS", "")
+ALL_CORES = min(
+    len(os.sched_getaffinity(0)), int(JOBS) if re.fullmatch("[1-9][0-9]*", JOBS) else 1024
+)
 # Another build tree, and filters of test runners, which would leave tests out without a word.
 THE_CALLERS = re.compile("RC10_BUILD$|GTEST_|TESTBRIDGE_|PYTEST_|CTEST_")
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)

@@ -54,6 +54,7 @@ RobotConfig configOf(const Subject& subject, const char* slew) {
   EXPECT_TRUE(outcome.config) << outcome.errorText();
   auto config = outcome.config.value_or(twoWheelsAndYaw());
   config.buses[0].motors[0].fallback.on_estop = FallbackAction::kHold;
+  config.buses[0].motors[0].fallback.on_timeout = FallbackAction::kHold;
   return config;
 }
 
@@ -109,6 +110,23 @@ class HeldLoad : public ::testing::TestWithParam<std::tuple<Subject, const char*
 TEST_P(HeldLoad, IsNotLetDownByTheAngleForWhichItWasHeld) {
   const double held_deg = heldDeg();
   EXPECT_LT(sinksDeg({.mode = ControlMode::kTotalAngle, .value = held_deg}), 0.3);
+}
+
+// In a pause of the computer no drive that only answers is heard: where it held its load it goes on at once.
+TEST_P(HeldLoad, IsNotLetGoWhenItsTargetEndsInAPause) {
+  const double held_deg = heldDeg();
+  robot.hold(kMotor, {.mode = ControlMode::kTotalAngle, .value = held_deg}, 2000);
+  const double before_deg = angleDeg();
+  robot.tick(60);
+  EXPECT_EQ(robot.robot().motors()[kMotor].motor->ordered(), FrameKind::kHold);
+  double lowest_deg = angleDeg();
+  for (int i = 0; i < 500; ++i) {
+    robot.run(1);
+    lowest_deg = std::min(lowest_deg, angleDeg());
+  }
+  // A spring sags once more from where it is held.
+  const bool sags = std::get<0>(GetParam()).springs;
+  EXPECT_LT(before_deg - lowest_deg, sags ? 8.0 : 0.6);
 }
 
 // A spring drive has no integral that would hold it.

@@ -240,7 +240,9 @@ void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   const auto& reduced = motor.config->reduced;
   if (seen.status != MotorStatus::kActive) motor.active_since = now_;
   const MonotonicTime since = std::max(mode_open_since_, motor.active_since);
-  if (!reduced.any() || !mode_open_ || now_ - since < reduced.within + kReducedSlack) {
+  // The tick after a pause may see it closed where this one does not yet.
+  const bool may_lift = now_ - mode_last_open_ >= std::chrono::milliseconds{490};
+  if (!reduced.any() || !mode_open_ || may_lift || now_ - since < reduced.within + kReducedSlack) {
     motor.fast_samples = 0;
     return;
   }

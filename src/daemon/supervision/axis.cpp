@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/angle.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -12,6 +14,9 @@ namespace {
 constexpr Duration kEnableTimeout = std::chrono::seconds{2};
 // A clear request goes out, and the answer comes back, at the slowest command_divider and feedback rate.
 constexpr Duration kClearPatience = std::chrono::milliseconds{250};
+
+// A shaft so near to its target is held there, sagging under its load.
+constexpr double kThereDeg = 10.0;
 
 // Drives that boot with the computer have answered by then.
 constexpr Duration kFirstAnswer = std::chrono::seconds{3};
@@ -54,10 +59,11 @@ Acting Axis::acting() const noexcept {
     case FrameKind::kHold: return Acting::kHold;
     case FrameKind::kDamp: return Acting::kDamp;
     case FrameKind::kBrake: return Acting::kBrake;
+    // It waits for a place, and acts as far as others are concerned.
+    case FrameKind::kIdle: return fallback_.kind() == FrameKind::kHold ? Acting::kHold : Acting::kNothing;
     case FrameKind::kCommand:
     case FrameKind::kRest:
     case FrameKind::kPoll:
-    case FrameKind::kIdle:
     case FrameKind::kEnable:
     case FrameKind::kDisable: break;
   }
@@ -236,8 +242,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
   auto kind = frameKind(robot);
-  // The place of before a pause is not where the shaft is: a hold begins at what is measured after it.
-  if (kind == FrameKind::kHold && motor_.ordered() != FrameKind::kHold && !fresh(tick))
+  if (kind == FrameKind::kHold && motor_.ordered() != FrameKind::kHold && !fresh(tick) && !stood())
     kind = FrameKind::kIdle;
   if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
@@ -260,6 +265,22 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   motor_.order(kind, in_force_);
   const bool stops = ramps_down || in_force_.mode == ControlMode::kBrake;
   if (stops || speeds_bounded_) boundSpeeds(stops, tick.now);
+}
+
+// A hold begins at a place that is measured after a pause, unless the shaft had no reason to leave the one of
+// before it: a load would sink meanwhile.
+bool Axis::stood() const noexcept {
+  if (!standsStill()) return false;
+  const auto ordered = motor_.ordered();
+  if (ordered == FrameKind::kBrake || ordered == FrameKind::kDamp) return true;
+  const double angle_deg = motor_.feedback().total_angle_deg;
+  switch (in_force_.mode) {
+    case ControlMode::kBrake: return true;
+    case ControlMode::kVelocity: return in_force_.value == 0.0;
+    case ControlMode::kAngle: return std::fabs(shortestAngle(angle_deg, in_force_.value)) < kThereDeg;
+    case ControlMode::kTotalAngle: return std::fabs(in_force_.value - angle_deg) < kThereDeg;
+    default: return false;
+  }
 }
 
 // A loop that has wound up against a hand, or to brake a heavy wheel, would push on: past a soft limit,

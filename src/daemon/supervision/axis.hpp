@@ -144,6 +144,8 @@ class Axis {
     return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
   }
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
+  /// In the last tick, where it was told to: the place that is known is where it is.
+  [[nodiscard]] bool stood() const noexcept;
   [[nodiscard]] std::optional<SkipReason> whyNotNow(const Target& target) const noexcept;
   void dropTarget() noexcept;
   void beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept;
