@@ -141,13 +141,20 @@ TEXT_OR_COMMENT = re.compile(
 
 
 def read_by_tidy(text: str) -> str:
-    """A source's lines without its comments, but for NOLINT and those within a line."""
+    """A source's lines without its comments, but for NOLINT and those within a line.
+
+    What comes between NOLINTNEXTLINE and its line ends its effect, so it leaves a trace.
+    """
 
     def keep(match: re.Match[str]) -> str:
         return "" if match[0].startswith("//") and "NOLINT" not in match[0] else match[0]
 
     lines = (line.strip() for line in TEXT_OR_COMMENT.sub(keep, text).splitlines())
-    return "\n".join(line for line in lines if line)
+    kept: list[str] = []
+    for line in lines:
+        if line or (kept and "NOLINTNEXTLINE" in kept[-1]):
+            kept.append(line or "//")
+    return "\n".join(kept)
 
 
 def says_the_same(old: str, new: str) -> bool:
@@ -192,7 +199,10 @@ def changed_files(since: str) -> set[Path]:
 
 
 def changed_sources(since: str, sources: list[Path]) -> set[Path]:
-    """Sources that differ from a commit; a header is seen through the first that includes it."""
+    """Sources that differ from a commit, and headers that no source includes.
+
+    Other headers are seen through the first source that includes them.
+    """
     changed = changed_files(since)
     headers = {file for file in changed if file.suffix == ".hpp"}
     includes = {source: included(source) for source in sources}
@@ -207,9 +217,39 @@ def changed_sources(since: str, sources: list[Path]) -> set[Path]:
         if seen:
             chosen.add(source)
             headers -= seen
+    return chosen | headers
+
+
+def headers_alone(entries: list[dict[str, str]]) -> set[Path]:
+    """Headers of src/ that no source includes: those of users' programs alone."""
+    seen: set[Path] = set()
+    for entry in entries:
+        for source in sources_of(Path(entry["file"])):
+            seen |= included(source.resolve())
+    return set((REPO / "src").rglob("*.hpp")) - seen
+
+
+def with_stubs(
+    folder: Path, headers: set[Path], entries: list[dict[str, str]]
+) -> list[dict[str, str]]:
+    """Entries of sources that include one of these headers each, in a build of their own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    stubs = []
     for header in sorted(headers):
-        print(f"not checked: {header.relative_to(REPO)}, which no source includes")
-    return chosen
+        like = max(entries, key=lambda entry: len(os.path.commonpath([header, nearest(entry)])))
+        stub = folder / ("_".join(header.relative_to(REPO).parts) + ".cpp")
+        stub.write_text(f'#include "{header}"\n')
+        words = [
+            str(stub) if word == like["file"] else word for word in shlex.split(like["command"])
+        ]
+        stubs.append({**like, "command": shlex.join(words), "file": str(stub)})
+    (folder / "compile_commands.json").write_text(json.dumps(stubs))
+    return stubs
+
+
+def nearest(entry: dict[str, str]) -> Path:
+    """The first source of a compilation."""
+    return sources_of(Path(entry["file"]))[0].resolve()
 
 
 def main() -> int:
@@ -229,19 +269,24 @@ def main() -> int:
     if not entries:
         print(f"{build}: no source of src/ in its compile_commands.json")
         return 1
+    alone = {header for header in headers_alone(entries) if wanted.search(str(header))}
+    like = entries
     if arguments.since is not None:
         sources = [Path(entry["file"]).resolve() for entry in entries]
         chosen = changed_sources(arguments.since, sources)
         entries = [entry for entry in entries if Path(entry["file"]).resolve() in chosen]
+        alone &= chosen
+    stubs = with_stubs(build / "headers", alone, like)
+    jobs = [(build, entry) for entry in entries] + [(build / "headers", stub) for stub in stubs]
     tool = version()
     with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", len(os.sched_getaffinity(0))))) as pool:
-        outputs = pool.map(lambda entry: check(build, tool, entry), entries)
+        outputs = pool.map(lambda job: check(job[0], tool, job[1]), jobs)
     found: dict[tuple[str, ...], str] = {}
-    for entry, output in zip(entries, outputs, strict=True):
+    for (_, entry), output in zip(jobs, outputs, strict=True):
         found.update(findings(output, entry["file"]))
     for _, text in sorted(found.items()):
         print(text, end="")
-    print(f"{len(entries)} sources, {len(found)} findings")
+    print(f"{len(entries)} sources, {len(stubs)} headers alone, {len(found)} findings")
     return int(bool(found))
 
 

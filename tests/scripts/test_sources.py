@@ -74,6 +74,8 @@ def test_a_comment_says_nothing_to_clang_tidy_but_nolint_does(repo: Path) -> Non
     assert changed(repo) == []
     (app / "c.cpp").write_text("int c() { return 0; }  // NOLINT\n")
     assert changed(repo) == ["c.cpp"]
+    near, far = "// NOLINTNEXTLINE\nint c();\n", "// NOLINTNEXTLINE\n// Reason.\nint c();\n"
+    assert not tidy.says_the_same(near, far)
 
 
 def test_settings_of_clang_tidy_that_change_concern_each_source(repo: Path) -> None:
@@ -134,3 +136,32 @@ def test_what_compiles_only_behind_another_is_found(
     assert "src/app/b.cpp:" in shown
     assert "src/app/b.hpp:" in shown
     assert "src/app/a" not in shown
+
+
+def test_a_header_that_no_source_includes_is_checked_by_itself(
+    repo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app = repo / "src" / "app"
+    (app / "users.hpp").write_text("#pragma once\ninline int users() { return 0; }\n")
+    command = f"c++ -I{repo}/src -o x.o -c {app / 'c.cpp'}"
+    commands = [{"file": str(app / "c.cpp"), "directory": str(repo), "command": command}]
+    (repo / "compile_commands.json").write_text(json.dumps(commands))
+    checked: dict[str, str] = {}
+
+    def find(build: Path, _tool: bytes, entry: dict[str, str]) -> str:
+        checked[entry["file"].rpartition("/")[2]] = entry.get("command", "")
+        listed = json.loads((build / "compile_commands.json").read_text())
+        assert entry in listed
+        return ""
+
+    monkeypatch.setattr(tidy, "check", find)
+    monkeypatch.setattr(tidy, "version", lambda: b"")
+    monkeypatch.setattr("sys.argv", ["tidy.py", str(repo)])
+    assert tidy.main() == 0
+    assert checked.keys() == {"c.cpp", "src_app_a.hpp.cpp", "src_app_users.hpp.cpp"}
+    assert checked["src_app_users.hpp.cpp"].endswith("src_app_users.hpp.cpp")
+    assert "1 sources, 2 headers alone" in capsys.readouterr().out
+    monkeypatch.setattr("sys.argv", ["tidy.py", str(repo), "--since", "HEAD"])
+    checked.clear()
+    tidy.main()
+    assert checked.keys() == {"src_app_users.hpp.cpp"}, "what has not changed is not checked again"
