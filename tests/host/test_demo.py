@@ -123,4 +123,7 @@ def test_without_namespaces_it_drives_through_the_link_socket(tmp_path: Path) ->
 def test_bad_usage_ends_with_status_2() -> None:
     with demo("--seconds", "soon") as shown:
         assert shown.wait() == 2
+        assert "--seconds takes a whole number of seconds" in shown.output
+    with demo("--second", "3") as shown:
+        assert shown.wait() == 2
         assert "usage" in shown.output

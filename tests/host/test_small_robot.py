@@ -6,6 +6,7 @@ import contextlib
 import re
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from hostlib import Daemon, Program, eventually
 from hostlib.daemon import BIN, REPO, State
 from hostlib.page import Block, blocks_run_by
 from hostlib.reader import Reader, commands
+from hostlib.stalls import stood_still_since
 from hostlib.terminal import Terminal
 
 import rc10
@@ -85,8 +87,7 @@ def wait_heard(daemon: Daemon) -> None:
     eventually(lambda: all(word in daemon.must("modules") for word in words), "the remote is heard")
 
 
-@pytest.mark.parametrize("language", PROGRAMS)
-def test_it_does_its_mission_also_after_the_remote_was_lost(
+def does_its_mission_also_after_the_remote_was_lost(
     small: Daemon, port: Path, language: str
 ) -> None:
     with Remote(port) as remote, program(language) as robot:
@@ -110,6 +111,22 @@ def test_it_does_its_mission_also_after_the_remote_was_lost(
         state = small.wait_motor("feeder_wheel", lambda m: abs(m["velocity_rpm"]) < 1, "rests")
         assert state["total_angle_deg"] > 100
         small.wait_motor("yaw", lambda m: abs(m["angle_deg"] - 30) < 3, "is held by the gimbal")
+
+
+@pytest.mark.parametrize("language", PROGRAMS)
+def test_it_does_its_mission_also_after_the_remote_was_lost(
+    small: Daemon, port: Path, language: str
+) -> None:
+    for _ in range(5):
+        begin_s = time.monotonic()
+        try:
+            return does_its_mission_also_after_the_remote_was_lost(small, port, language)
+        except AssertionError as failed:
+            # It then waits to be armed once more, as it should.
+            cut_off = "no news of rc10d" in str(failed)
+            if not cut_off or not stood_still_since(begin_s, f"a mission in {language}"):
+                raise
+    raise AssertionError("five missions without news of rc10d")
 
 
 def test_a_stick_is_held_where_it_was_typed(small: Daemon, port: Path) -> None:
