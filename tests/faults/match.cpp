@@ -185,7 +185,7 @@ void Match::unplugUnnoticed(std::size_t motor) {
 
 void Match::leadAstray(std::size_t motor) {
   auto& player = players_[motor];
-  const double deg = wrapHalfTurn(double{robot_.snapshot().motors[motor].feedback.angle_deg});
+  const double deg = wrapHalfTurn(static_cast<double>(robot_.snapshot().motors[motor].feedback.angle_deg));
   unplug(motor, 3s);
   busOf(player).turnByHand(
       player.drive,
@@ -296,7 +296,8 @@ void Match::reference() {
 void Match::turnBack(Player& player) {
   const auto now = robot_.now();
   if (now < player.turned_back_until) return;
-  const double deg = wrapHalfTurn(double{robot_.snapshot().motors[player.motor].feedback.angle_deg});
+  const double deg =
+      wrapHalfTurn(static_cast<double>(robot_.snapshot().motors[player.motor].feedback.angle_deg));
   busOf(player).turnByHand(player.drive,
                            {.by_deg = -deg, .speed_rpm = kBackRpm, .torque_nm = kBackNm, .hold = 0s});
   player.turned_back_until = now + kBackOnceIn;
