@@ -43,12 +43,17 @@ def check_only(entry: dict[str, str]) -> list[str]:
     return words
 
 
+def source_including(header: Path, folder: Path) -> Path:
+    """Writes a source that includes only this header."""
+    source = folder / ("_".join(header.relative_to(SRC).parts) + ".cpp")
+    source.write_text(f'#include "{header}"\n')
+    return source
+
+
 def of_header(header: Path, like: Compilation, scratch: Path) -> Compilation:
-    """Compiles a source that includes only this header, like another source of its folder."""
-    name = header.relative_to(SRC)
-    stub = scratch / ("_".join(name.parts) + ".cpp")
-    stub.write_text(f'#include "{header}"\n')
-    return Compilation(header, like.folder, [*like.words[:-1], str(stub)])
+    """Compiles a header by itself, like a source of its folder."""
+    source = source_including(header, scratch)
+    return Compilation(header, like.folder, [*like.words[:-1], str(source)])
 
 
 def included_first(source: Path) -> Path | None:

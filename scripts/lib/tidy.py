@@ -26,6 +26,8 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
 
+from alone import source_including
+
 REPO = Path(__file__).resolve().parents[2]
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rc10"
 CLEAN = Path(os.environ.get("RC10_CACHE") or CACHE) / "tidy"
@@ -229,22 +231,19 @@ def headers_alone(entries: list[dict[str, str]]) -> set[Path]:
     return set((REPO / "src").rglob("*.hpp")) - seen
 
 
-def with_stubs(
+def entries_of_headers(
     folder: Path, headers: set[Path], entries: list[dict[str, str]]
 ) -> list[dict[str, str]]:
-    """Entries of sources that include one of these headers each, in a build of their own."""
+    """A build, in this folder, whose sources include one of these headers each."""
     folder.mkdir(parents=True, exist_ok=True)
-    stubs = []
+    made = []
     for header in sorted(headers):
         like = max(entries, key=lambda entry: len(os.path.commonpath([header, nearest(entry)])))
-        stub = folder / ("_".join(header.relative_to(REPO).parts) + ".cpp")
-        stub.write_text(f'#include "{header}"\n')
-        words = [
-            str(stub) if word == like["file"] else word for word in shlex.split(like["command"])
-        ]
-        stubs.append({**like, "command": shlex.join(words), "file": str(stub)})
-    (folder / "compile_commands.json").write_text(json.dumps(stubs))
-    return stubs
+        source = str(source_including(header, folder))
+        words = [source if word == like["file"] else word for word in shlex.split(like["command"])]
+        made.append({**like, "command": shlex.join(words), "file": source})
+    (folder / "compile_commands.json").write_text(json.dumps(made))
+    return made
 
 
 def nearest(entry: dict[str, str]) -> Path:
@@ -276,8 +275,10 @@ def main() -> int:
         chosen = changed_sources(arguments.since, sources)
         entries = [entry for entry in entries if Path(entry["file"]).resolve() in chosen]
         alone &= chosen
-    stubs = with_stubs(build / "headers", alone, like)
-    jobs = [(build, entry) for entry in entries] + [(build / "headers", stub) for stub in stubs]
+    of_headers = entries_of_headers(build / "headers", alone, like)
+    jobs = [(build, entry) for entry in entries] + [
+        (build / "headers", entry) for entry in of_headers
+    ]
     tool = version()
     with ThreadPoolExecutor(int(os.environ.get("RC10_JOBS", len(os.sched_getaffinity(0))))) as pool:
         outputs = pool.map(lambda job: check(job[0], tool, job[1]), jobs)
@@ -286,7 +287,7 @@ def main() -> int:
         found.update(findings(output, entry["file"]))
     for _, text in sorted(found.items()):
         print(text, end="")
-    print(f"{len(entries)} sources, {len(stubs)} headers alone, {len(found)} findings")
+    print(f"{len(entries)} sources, {len(of_headers)} headers alone, {len(found)} findings")
     return int(bool(found))
 
 

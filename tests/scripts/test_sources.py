@@ -158,10 +158,10 @@ def test_a_header_that_no_source_includes_is_checked_by_itself(
     monkeypatch.setattr(tidy, "version", lambda: b"")
     monkeypatch.setattr("sys.argv", ["tidy.py", str(repo)])
     assert tidy.main() == 0
-    assert checked.keys() == {"c.cpp", "src_app_a.hpp.cpp", "src_app_users.hpp.cpp"}
-    assert checked["src_app_users.hpp.cpp"].endswith("src_app_users.hpp.cpp")
+    assert checked.keys() == {"c.cpp", "app_a.hpp.cpp", "app_users.hpp.cpp"}
+    assert checked["app_users.hpp.cpp"].endswith("app_users.hpp.cpp")
     assert "1 sources, 2 headers alone" in capsys.readouterr().out
     monkeypatch.setattr("sys.argv", ["tidy.py", str(repo), "--since", "HEAD"])
     checked.clear()
     tidy.main()
-    assert checked.keys() == {"src_app_users.hpp.cpp"}, "what has not changed is not checked again"
+    assert checked.keys() == {"app_users.hpp.cpp"}, "what has not changed is not checked again"

@@ -36,11 +36,15 @@ class StallWitness(threading.Thread):
     def __init__(self) -> None:
         super().__init__(daemon=True)
         self.last_s = float("-inf")
+        self._ended = threading.Event()
+
+    def end(self) -> None:
+        self._ended.set()
+        self.join()
 
     def run(self) -> None:
         looks = [(time.monotonic(), waited_us())]
-        while True:
-            time.sleep(LOOK_S)
+        while not self._ended.wait(LOOK_S):
             now_s = time.monotonic()
             if now_s - looks[-1][0] > LATE_S:
                 self.last_s = now_s
@@ -69,6 +73,7 @@ def pytest_sessionstart() -> None:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
+    WITNESS.end()
     if hasattr(session.config, "workeroutput"):
         session.config.workeroutput[FROM_WORKER] = BEGUN_ANEW
 
