@@ -16,7 +16,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # Order of starting: a part that leaves cores free starts beside those before it.
 default=(unit kernel host pages)
 ci=("${default[@]}" lint web demo tidy benchmarks faults soak)
-all=("${default[@]}" lint web demo clang benchmarks faults vm package sanitize soak fuzz)
+# The two long parts that use one core each go beside each other.
+all=("${default[@]}" package vm lint web demo clang benchmarks faults sanitize soak fuzz)
 # Long, a Debian of its own, or from the net: not among all.
 nightly=(arm64 fresh long_fuzz long_soak long_stream mutants registry)
 parts=(build "${all[@]}" tidy "${nightly[@]}")

@@ -152,3 +152,27 @@ def test_a_bare_machine_reads_what_comes_and_how_long_before_the_packages(tmp_pa
     )
     assert run.stdout.startswith(said)
     assert run.returncode != 0
+
+
+@pytest.mark.parametrize("name", ["default", "ci", "all"])
+def test_the_table_of_sets_quotes_the_budget(name: str) -> None:
+    budget = json.loads((PARTS / "budget.json").read_text())
+    cpu_s = sum(budget["parts"][part]["cpu_s"] for part in ["build", *SET[name]])
+    cold_min, warm_min = (round(seconds / 60) for seconds in budget["sets"][name].values())
+    (row,) = re.findall(rf"^\| `{name}` \|.*$", PAGE, re.MULTILINE)
+    assert row.endswith(f"| {cold_min} ({cpu_s:,} CPU-seconds) | {warm_min} |")
+
+
+@pytest.mark.parametrize(
+    ("page", "words"),
+    [
+        ("README.md", "{} minutes the first time"),
+        ("README.zh-CN.md", "第一次 {} 分钟"),
+        ("docs/quick-start.md", "{} minutes as long as nothing has been compiled"),
+        ("docs/quick-start.zh-CN.md", "在什么都没编译过时要 {} 分钟"),
+    ],
+)
+def test_a_newcomers_page_quotes_the_budget(page: str, words: str) -> None:
+    budget = json.loads((PARTS / "budget.json").read_text())
+    cold_min = round(budget["sets"]["default"]["cold_s"] / 60)
+    assert words.format(cold_min) in (REPO / page).read_text()

@@ -53,8 +53,8 @@ def config(
     )
 
 
-def set_up(iface: str, settings: str) -> None:
-    set_link(iface, f"bitrate 1000000 listen-only off {settings} restart-ms 0")
+def set_up(iface: str, settings: str, *, unseen_by: Proc | None = None) -> None:
+    set_link(iface, f"bitrate 1000000 listen-only off {settings} restart-ms 0", unseen_by=unseen_by)
 
 
 @pytest.fixture(autouse=True)
@@ -98,7 +98,7 @@ def test_a_classic_interface_becomes_one_for_fd_and_stays_so(tmp_path: Path) -> 
             findings.wait(PATIENCE_S)
         assert re.search(r"can2 FD mode.*on, data phase 5000 kbit/s", findings.output())
 
-        set_up("can2", "dbitrate 2000000 fd on")
+        set_up("can2", "dbitrate 2000000 fd on", unseen_by=process)
         process.wait_line(
             "can2 is set to 2000000 bit/s in the data phase, the configuration says 5000000: "
             "can2 taken down and up at 1000000 bit/s, data 5000000 bit/s",
@@ -106,7 +106,7 @@ def test_a_classic_interface_becomes_one_for_fd_and_stays_so(tmp_path: Path) -> 
         )
         wait_for(is_as_configured, PATIENCE_S, "the configured data bit rate", poll_s=0.1)
 
-        set_up("can2", "fd off listen-only on")
+        set_up("can2", "fd off listen-only on", unseen_by=process)
         process.wait_line(
             "can2 has CAN FD off, the configuration has data_bitrate: can2 taken down", PATIENCE_S
         )
@@ -131,7 +131,7 @@ def test_without_manage_link_the_command_is_told_and_helps(tmp_path: Path) -> No
         run(*shlex.split(command))
     with running(file) as process:
         assert missing() == []
-        set_up("can2", "dbitrate 2000000 fd on")
+        set_up("can2", "dbitrate 2000000 fd on", unseen_by=process)
         process.wait_line(
             f"in the data phase, the configuration says 5000000; type: {re.escape(COMMAND)}",
             PATIENCE_S,

@@ -96,16 +96,21 @@ def test_an_interface_that_somebody_stops_is_started_again(tmp_path: Path) -> No
 
 def test_another_bit_rate_while_it_runs_is_mended(tmp_path: Path) -> None:
     with running(config(tmp_path, managed=True)) as process:
-        set_bitrate(500_000)
-        process.wait_line("can0 taken down and up at 1000000 bit/s", PATIENCE_S)
+        set_link("can0", "bitrate 500000 restart-ms 0", unseen_by=process)
+        process.wait_line("500000 bit/s.*: can0 taken down and up at 1000000 bit/s", PATIENCE_S)
         wait_for(is_as_configured, PATIENCE_S, "the configured bit rate", poll_s=0.1)
 
 
 def test_modes_in_which_frames_get_lost_are_taken_away(tmp_path: Path) -> None:
     with running(config(tmp_path, managed=True)) as process:
-        set_link("can0", "bitrate 1000000 one-shot on presume-ack on restart-ms 0")
-        # Its cause may be that it was down, for a guest that is slow between that and the mode.
-        process.wait_line(": can0 taken down and up at 1000000 bit/s", PATIENCE_S)
+        set_link(
+            "can0",
+            "bitrate 1000000 one-shot on presume-ack on restart-ms 0",
+            unseen_by=process,
+        )
+        process.wait_line(
+            "the mode one-shot on: .*: can0 taken down and up at 1000000 bit/s", PATIENCE_S
+        )
         wait_for(
             lambda: (
                 "ONE-SHOT" not in link_details("can0") and "PRESUME-ACK" not in link_details("can0")
