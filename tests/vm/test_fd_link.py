@@ -113,10 +113,11 @@ def test_a_classic_interface_becomes_one_for_fd_and_stays_so(tmp_path: Path) -> 
         wait_for(is_as_configured, PATIENCE_S, "CAN FD", poll_s=0.1)
 
         run("ip", "link", "set", "can2", "down")
-        process.wait_line(
-            "interface down: can2 taken down and up at 1000000 bit/s, data 5000000", PATIENCE_S
+        process.wait_lines(
+            "interface down: can2 taken down and up at 1000000 bit/s, data 5000000",
+            READY,
+            timeout_s=PATIENCE_S,
         )
-        process.wait_line(READY, PATIENCE_S)
         assert missing() == []
 
 

@@ -89,8 +89,9 @@ def test_an_interface_that_somebody_stops_is_started_again(tmp_path: Path) -> No
     with running(config(tmp_path, managed=True)) as process:
         run("ip", "link", "set", "can0", "down")
         process.wait_line("bus interface down", PATIENCE_S)
-        process.wait_line("interface down: can0 taken down and up at 1000000 bit/s", PATIENCE_S)
-        process.wait_line(READY, PATIENCE_S)
+        process.wait_lines(
+            "interface down: can0 taken down and up at 1000000 bit/s", READY, timeout_s=PATIENCE_S
+        )
         assert is_as_configured()
 
 
@@ -127,8 +128,9 @@ def test_bus_off_ends_in_a_restart(tmp_path: Path) -> None:
         run("cansend", "can0", BUS_OFF)
         process.wait_line("bus bus-off", PATIENCE_S)
         process.wait_line("left: READY -> OFFLINE", PATIENCE_S)
-        process.wait_line("bus-off: can0 taken down and up at 1000000 bit/s", PATIENCE_S)
-        process.wait_line(READY, PATIENCE_S)
+        process.wait_lines(
+            "bus-off: can0 taken down and up at 1000000 bit/s", READY, timeout_s=PATIENCE_S
+        )
 
 
 def test_a_stalled_bus_is_restarted_until_its_frames_reach_the_wire(tmp_path: Path) -> None:

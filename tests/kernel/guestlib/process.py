@@ -139,19 +139,31 @@ class Proc:
 
         "Next" counts from the line the last call returned, so a test reads events in order.
         """
-        expression = re.compile(pattern)
+        return self.wait_lines(pattern, timeout_s=timeout_s)[0]
+
+    def wait_lines(self, *patterns: str, timeout_s: float) -> list[re.Match[str]]:
+        """Return the matches of the next line for each pattern, in whatever order they come.
+
+        Threads that write of one event do not wait for each other.
+        """
+        found: dict[str, re.Match[str]] = {}
         deadline = time.monotonic() + timeout_s
         with self._news:
             while True:
                 while self._next < len(self._lines):
+                    line = self._lines[self._next]
                     self._next += 1
-                    if match := expression.search(self._lines[self._next - 1]):
-                        return match
+                    for pattern in patterns:
+                        if pattern not in found and (match := re.search(pattern, line)):
+                            found[pattern] = match
+                    if len(found) == len(patterns):
+                        return [found[pattern] for pattern in patterns]
                 if self._ended or not self._news.wait(deadline - time.monotonic()):
                     break
             why = "ended without" if self._ended else f"wrote in {timeout_s} s no"
             text = "".join(self._lines)
-        raise TimeoutError(f"{self._command[0]} {why} line '{pattern}':\n{text}")
+        missing = next(pattern for pattern in patterns if pattern not in found)
+        raise TimeoutError(f"{self._command[0]} {why} line '{missing}':\n{text}")
 
     def _read(self) -> None:
         stream = self._started().stdout
