@@ -63,12 +63,14 @@ name=
 # Packages of all parts, at once.
 mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
 "$here/install-deps.sh" --may-ask "${groups[@]}"
-if [ -n "$("$here/install-deps.sh" --missing "${groups[@]}")" ]; then
+missing=$("$here/install-deps.sh" --missing "${groups[@]}")
+if [ -n "$missing" ]; then
     # run_parts.py says it as well, but Python is among the packages.
     cold_s=$(sed -n "/\"$name\": {/,/}/s/.*\"cold_s\": \([0-9]*\).*/\1/p" "$here/test/budget.json")
     how_long="How long they take: CONTRIBUTING.md."
     [ -z "$cold_s" ] || how_long="About $(as_minutes "$cold_s") on 2 cores, with the Debian packages, which come first."
     echo "rc10d's tests: ${wanted[*]}. $how_long"
+    [[ $missing != *linux-image-rt-* ]] || echo "NOTE among the packages is a PREEMPT_RT kernel, which GRUB may start from then on."
 fi
 progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
 exec /usr/bin/python3 "$here/lib/run_parts.py" --name "$name" "${wanted[@]}"

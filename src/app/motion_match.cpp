@@ -18,6 +18,8 @@ constexpr double kTight = 0.2;
 // The same, of the worst candidate less the best: at an even acceleration each lag fits as well.
 constexpr double kDistinct = 0.2;
 constexpr int kFewest = 4;
+// Nobody takes a sensor off and mounts it anew in less.
+constexpr double kRemountSeconds = 2.0;
 
 }  // namespace
 
@@ -30,6 +32,7 @@ double MotionMatch::motorThen() const noexcept { return ago(std::min(lag_.value_
 
 void MotionMatch::reset() noexcept {
   candidates_.fill({});
+  count_ = 0;  // no change is counted from before it
   learned_ = 0;
   sign_ = Sign::kUnknown;
   lag_.reset();
@@ -49,8 +52,11 @@ void MotionMatch::step(double motor, double sensor, float dt_s) noexcept {
   const auto dt = static_cast<double>(dt_s);
   if (!std::isfinite(motor) || !std::isfinite(sensor) || !(dt > 0.0)) {
     count_ = 0;
+    gap_s_ += std::isfinite(dt) ? dt : 0.0;
+    if (gap_s_ >= kRemountSeconds && sign_ == Sign::kAgrees) reset();
     return;
   }
+  gap_s_ = 0.0;
   if (period_s_ == 0.0 || dt < 0.5 * period_s_) period_s_ = dt;
   if (dt > 1.5 * period_s_) count_ = 0;  // ticks are missing: ages are not counted over them
   since_fresh_s_ += dt;

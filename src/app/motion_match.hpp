@@ -25,7 +25,7 @@ class MotionMatch {
   void step(double motor, double sensor, float dt_s) noexcept;
   /// The sensor's value of the last step was a new one.
   [[nodiscard]] bool fresh() const noexcept { return fresh_; }
-  /// Stays until reset().
+  /// Stays until reset(). That of a sensor which was away for 2 s is found anew, unless it is opposed.
   [[nodiscard]] Sign sign() const noexcept { return sign_; }
   /// Empty until a motion has shown it.
   [[nodiscard]] std::optional<double> lagSeconds() const noexcept;
@@ -65,6 +65,7 @@ class MotionMatch {
   std::size_t count_ = 0;  ///< Ticks since the last gap, at most kRoom.
   double period_s_ = 0.0;
   double since_fresh_s_ = 0.0;
+  double gap_s_ = 0.0;
   int learned_ = 0;
   bool fresh_ = false;
   Sign sign_ = Sign::kUnknown;

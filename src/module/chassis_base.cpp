@@ -162,10 +162,10 @@ Twist2D Chassis_Base::wanted(const ModuleRobot& robot) const noexcept {
   Twist2D twist{
       .vx_m_s = finiteOr0(input(kVx)), .vy_m_s = finiteOr0(input(kVy)), .wz_deg_s = finiteOr0(input(kWz))};
   const double gimbal_deg = follow_ ? robot.read(*follow_) : kNoSignal;
-  const auto frame = static_cast<int>(finiteOr0(input(kFrame)));
-  if (frame == 1) {
+  const double frame = std::trunc(finiteOr0(input(kFrame)));
+  if (frame == 1.0) {
     twist = worldToBody(twist, odometry_.pose().heading_deg);
-  } else if (frame == 2) {
+  } else if (frame == 2.0) {
     // The gimbal's angle is not known: no motion is better than one in a wrong direction.
     if (!std::isfinite(gimbal_deg)) return {};
     twist = seenFrom(-gimbal_deg, twist);
@@ -217,8 +217,13 @@ void Chassis_Base::updateOdometry(const Tick& tick, ModuleRobot& robot) noexcept
 }
 
 // A heading of the wrong sign would turn every twist of the world's frame the wrong way. The first turn shows
-// it; a sensor is not mended while rc10d runs.
+// it. While the motors are disabled a person may mount the sensor anew: one that agreed is compared again.
+// One that did not stays out: to believe it until the next turn would turn the heading about.
 double Chassis_Base::trustedHeading(const Twist2D& way, const Tick& tick, ModuleRobot& robot) noexcept {
+  const bool active = std::all_of(motors_.begin(), motors_.end(), [&](std::size_t motor) {
+    return robot.status(motor) == MotorStatus::kActive;
+  });
+  if (std::exchange(was_active_, active) != active && !heading_opposed_) heading_match_.reset();
   const double heading_deg = heading_ ? robot.read(*heading_) : kNoSignal;
   if (std::isfinite(way.wz_deg_s)) wheels_heading_deg_ += way.wz_deg_s * static_cast<double>(tick.dt_s);
   heading_match_.step(wheels_heading_deg_, heading_deg, tick.dt_s);

@@ -72,6 +72,7 @@ class Chassis_Base : public Module_Base {
   MotionMatch heading_match_;
   double wheels_heading_deg_ = 0.0;
   bool heading_opposed_ = false;
+  bool was_active_ = false;  ///< All motors.
   PowerLimiter power_;
 };
 

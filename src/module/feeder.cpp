@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "app/units.hpp"
+#include "module/travel_of_motors.hpp"
+
 namespace rc10 {
 namespace {
 
@@ -74,6 +77,7 @@ class Feeder : public Module_Base {
       : Module_Base(feederSignals()),
         motor_(own.motor("motor")),
         limit_rpm_(own.number("velocity_limit_rpm")),
+        travel_(1, limit_rpm_),
         deg_per_shot_(own.number("deg_per_shot")),
         jam_time_(std::chrono::milliseconds{own.integer("jam_ms")}),
         reverse_rpm_(std::min(own.number("reverse_rpm"), limit_rpm_)),
@@ -84,7 +88,7 @@ class Feeder : public Module_Base {
 
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const auto& feedback = robot.feedback(motor_);
-    countShots(feedback);
+    countShots(feedback, tick.dt_s);
     const double wanted_rpm = wanted(robot);
     if (wanted_rpm == 0.0) {
       // Nobody asks: what was wrong is over, and is found anew if it is not.
@@ -117,11 +121,10 @@ class Feeder : public Module_Base {
   }
 
   // `shots` is a count: each step up fires one. Its first value fires nothing.
-  void countShots(const MotorFeedback& feedback) noexcept {
-    const double turned_deg = feedback.total_angle_deg - last_deg_;
+  void countShots(const MotorFeedback& feedback, float dt_s) noexcept {
+    const double turned_deg = travel_.meanRpm(0, feedback, dt_s) * kDegPerSPerRpm * static_cast<double>(dt_s);
     if (std::isfinite(turned_deg) && shots_left_deg_ > 0.0)
       shots_left_deg_ = std::max(0.0, shots_left_deg_ - turned_deg);
-    last_deg_ = feedback.total_angle_deg;
     // Each sender has a count of its own.
     if (std::exchange(counted_for_, senderCount()) != senderCount()) {
       last_shots_ = kNoSignal;
@@ -190,6 +193,7 @@ class Feeder : public Module_Base {
 
   std::size_t motor_;
   double limit_rpm_;
+  TravelOfMotors travel_;
   double deg_per_shot_;
   Duration jam_time_;
   double reverse_rpm_;
@@ -200,8 +204,7 @@ class Feeder : public Module_Base {
   double shots_left_deg_ = 0.0;
   double last_shots_ = kNoSignal;
   std::uint32_t counted_for_ = 0;  ///< The sender of last_shots_.
-  double last_deg_ = kNoSignal;
-  int in_a_row_ = 0;  ///< Jams without a success between them.
+  int in_a_row_ = 0;               ///< Jams without a success between them.
   long jams_ = 0;
   MonotonicTime moved_{};
   MonotonicTime reverse_until_{};

@@ -142,10 +142,11 @@ class Gimbal : public Module_Base {
     const bool idle = restarts || !was_commanded_;
     if (idle || stabilised != was_stabilised_) yaw_.hold(yaw_deg);
     if (idle || by_imu_pitch != was_by_imu_pitch_) pitch_.hold(pitch_deg);
-    // Disabling is a person's, who may have turned the sensor; a takeover or a lost reference turns none.
+    // Disabling is a person's, who may mount the sensor anew until the next enabling; a takeover or a lost
+    // reference turns none.
     const bool active = robot.status(yaw_motor_) == MotorStatus::kActive &&
                         robot.status(pitch_motor_) == MotorStatus::kActive;
-    if (was_active_ && !active) forgetOpposed();
+    if (was_active_ != active) forgetSensors(active);
     was_active_ = active;
     was_ready_ = ready;
     was_stabilised_ = stabilised;
@@ -209,10 +210,11 @@ class Gimbal : public Module_Base {
   [[nodiscard]] bool opposed(std::size_t which) const noexcept {
     return match(which).sign() == MotionMatch::Sign::kOpposed;
   }
-  void forgetOpposed() noexcept {
-    if (opposed(kImuYaw)) yaw_match_.reset();
-    if (opposed(kImuYawRate)) carried_.forget();
-    if (opposed(kImuPitch)) pitch_match_.reset();
+  // A sign that a hand has shown to be wrong stays so when the motors are enabled.
+  void forgetSensors(bool but_opposed) noexcept {
+    if (!(but_opposed && opposed(kImuYaw))) yaw_match_.reset();
+    if (!(but_opposed && opposed(kImuYawRate))) carried_.forget();
+    if (!(but_opposed && opposed(kImuPitch))) pitch_match_.reset();
   }
   [[nodiscard]] double lagMs() const noexcept {
     for (const auto which : {kImuYawRate, kImuYaw, kImuPitch}) {

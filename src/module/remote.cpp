@@ -183,7 +183,7 @@ class Remote : public Module_Base {
     watchLink(heard, tick, robot);
     if (heard) {
       robot.hearClient();
-      watchArm(tick, robot);
+      watchArm(tick.now - age, tick, robot);
     }
     // An e-stop ends what the switch has asked for: its own end enables nothing.
     if (robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
@@ -227,11 +227,23 @@ class Remote : public Module_Base {
     robot.askAll(RobotRequest::kDisableUnasked);
   }
 
+  // Neither protocol has a checksum, and parity lets two wrong bits pass: of two frames in a row both are
+  // right.
+  [[nodiscard]] std::optional<bool> switchUp(std::size_t channel, MonotonicTime received) noexcept {
+    if (received == judged_) return switch_up_;
+    judged_ = received;
+    const bool up = values_[channel] > arm_above_;
+    if (last_up_ == up) switch_up_ = up;
+    last_up_ = up;
+    return switch_up_;
+  }
+
   // Only a switch that was seen down can go up: one that is up when the robot starts enables nothing.
-  void watchArm(const Tick& tick, ModuleRobot& robot) noexcept {
+  void watchArm(MonotonicTime received, const Tick& tick, ModuleRobot& robot) noexcept {
     if (!arm_channel_) return;
-    const bool up = values_[*arm_channel_] > arm_above_;
-    if (!up) {
+    const auto up = switchUp(*arm_channel_, received);
+    if (!up) return;
+    if (!*up) {
       if (armed_) disableWhatIsOn(robot);
       armed_ = false;
       switch_known_ = true;
@@ -286,6 +298,10 @@ class Remote : public Module_Base {
   std::vector<double> values_;
   std::vector<bool> was_active_;   ///< Motors that were ACTIVE since the switch went up.
   std::vector<std::size_t> some_;  ///< Room for the motors of one request.
+
+  std::optional<bool> last_up_;    ///< The switch in the last frame.
+  std::optional<bool> switch_up_;  ///< The switch as two frames in a row had it.
+  MonotonicTime judged_{};         ///< When that frame came.
 
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;

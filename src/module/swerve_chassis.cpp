@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "app/swerve_kinematics.hpp"
+#include "module/chassis_base.hpp"
 #include "module/chassis_keys.hpp"
 #include "module/shared_limit.hpp"
-#include "module/wheeled_chassis.hpp"
+#include "module/travel_of_motors.hpp"
 
 namespace rc10 {
 namespace {
@@ -79,7 +80,7 @@ class SwerveChassis final : public Chassis_Base {
   Motors drives_;
   Motors steerings_;
   double limit_rpm_;
-  WheelTravel travel_;
+  TravelOfMotors travel_;
 };
 
 class SwerveChassisType : public ChassisType {

@@ -17,6 +17,11 @@ struct CascadeConfig {
   float velocity_limit_rpm = 0.0F;  ///< Bounds every velocity target, also the angle loop's output. 0: none.
 };
 
+[[nodiscard]] inline float velocityKp(const CascadeConfig& loops) noexcept {
+  const auto* incremental = std::get_if<PID_Incremental::Config>(&loops.velocity);
+  return incremental != nullptr ? incremental->kp : std::get_if<PID_Position::Config>(&loops.velocity)->kp;
+}
+
 /// Angle -> velocity -> effort, shared by all motors whose loops run on the host.
 /// Gains are per second and per unit, independent of the rate.
 class Cascade {

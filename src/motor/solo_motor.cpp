@@ -11,6 +11,9 @@
 namespace rc10 {
 namespace {
 
+// A field of twelve bits, less half a step.
+constexpr double kSpeedFieldShare = 1.0 - 1.0 / 4096.0;
+
 [[nodiscard]] Duration periodOf(int hz) noexcept {
   return std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
 }
@@ -55,7 +58,10 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
 void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) noexcept {
   takeAngle(drive_position_deg);
   if (traits_.scaled_speed && obeying()) {
-    speed_scale_.add(received, toOutput(drive_position_deg), static_cast<double>(feedback_.velocity_rpm));
+    const auto rpm = static_cast<double>(feedback_.velocity_rpm);
+    const bool at_end = std::fabs(toDrive(rpm)) >= kSpeedFieldShare * speed_field_end_rpm_;
+    speed_scale_.add(received, toOutput(drive_position_deg),
+                     at_end ? std::numeric_limits<double>::quiet_NaN() : rpm);
   }
   feedback_.received = received;
   ++feedback_.samples;

@@ -21,6 +21,8 @@ constexpr std::uint64_t kPublishEvery = kTurnsPerSecond / 25;
 
 // From the moment at which the page sent its renewal.
 constexpr Duration kHeldLease = std::chrono::milliseconds{150};
+// As the requests of LCM: nobody expects any more that it is done.
+constexpr Duration kLatestRequest = std::chrono::seconds{1};
 // After a wrong token, for all pages together: opening another one gives no more tries.
 constexpr Duration kWrongTokenPause = std::chrono::milliseconds{200};
 
@@ -100,7 +102,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   if (const auto* shown = std::get_if<ShowToken>(&*request)) {
     take(*page, *shown, now);
   } else if (const auto* robot = std::get_if<AskRobot>(&*request)) {
-    ask(*page, *robot, now);
+    ask(*page, *robot, now, robot->sent ? page->renewals.ageOf(*robot->sent, now) : Duration::zero());
   } else if (const auto* held = std::get_if<DriveMotor>(&*request)) {
     drive(*page, *held, now, page->renewals.ageOf(held->sent, now));
   } else if (const auto* clock = std::get_if<TellClock>(&*request)) {
@@ -114,7 +116,7 @@ void Hub::handle(PageSocket& socket, std::string_view message, MonotonicTime now
   } else if (const auto* end = std::get_if<EndTest>(&*request)) {
     if (page->test && page->test->seq() == end->seq) page->test->end(end->why);
   } else if (const auto* file = std::get_if<ChangeFile>(&*request)) {
-    change(*page, *file);
+    change(*page, *file, page->renewals.ageOf(file->sent, now));
   } else if (page->right == PageRight::kNothing) {
     page->socket->sendText(shared(responseMessage(numberOf(message), "refused", "show the token first")));
   } else if (const auto* view = std::get_if<ChooseView>(&*request)) {
@@ -200,8 +202,9 @@ void Hub::check(const Page& page, CheckConfig wanted) {
 }
 
 // The rights are those of the file that rc10d has accepted; polkit decides about rc10-web as a whole.
-void Hub::change(Page& page, const ChangeFile& wanted) {
+void Hub::change(Page& page, const ChangeFile& wanted, Duration age) {
   auto refused = whyNotMoving(page);
+  if (refused.empty()) refused = whyTooLate(age);
   if (refused.empty() && page.changes_file) refused = "the root helper is at work for this page";
   const auto accepted = readAcceptedConfig(
       link::runDir(), feed_.connected() ? std::optional{std::string{feed_.welcome().robot.view()}} : robot_);
@@ -330,16 +333,24 @@ void Hub::answer(Page& page, const AskRange& wanted) {
                                        wanted.first_column, wanted.count));
 }
 
-void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now) {
+void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now, Duration age) {
   const bool estop = operationNamed(wanted.operation) == Operation::kEstop;
   // Before the page's own connection, which is there for the answer: all may be taken, or rc10d busy.
   const bool under_way = estop && feed_.estop(page.name);
   std::string refused = estop ? std::string{} : whyNotMoving(page);
+  if (refused.empty() && wanted.sent) refused = whyTooLate(age);
   if (refused.empty())
     refused = feed_.connected() ? page.link->ask(wanted, feed_.socketPath(), now) : feed_.reason();
   if (refused.empty()) return;
   if (under_way) refused.insert(0, "the e-stop was sent and is not confirmed: ");
   page.socket->sendText(shared(responseMessage(wanted.seq, under_way ? "failed" : "refused", refused)));
+}
+
+// A connection that was held up delivers in the end what nobody expects to be done any more.
+std::string Hub::whyTooLate(Duration age) {
+  if (age <= kLatestRequest) return {};
+  return "it came " + std::to_string(age / std::chrono::milliseconds{1}) +
+         " ms late, the connection was held up, and it was not done: ask again";
 }
 
 std::string Hub::whyNotMoving(const Page& page) const {

@@ -90,13 +90,13 @@ class Hub {
   void judgeTokens(MonotonicTime now);
   void choose(Page& page, const ChooseView& wanted);
   void answer(Page& page, const AskRange& wanted);
-  void ask(Page& page, const AskRobot& wanted, MonotonicTime now);
+  void ask(Page& page, const AskRobot& wanted, MonotonicTime now, Duration age);
   void open(Page& page, const AskRecording& wanted);
   void sendPiece(Page& page, const AskPiece& wanted);
   void drive(Page& page, const DriveMotor& wanted, MonotonicTime now, Duration age);
   void showConfigTo(const Page& page, const AskConfig& wanted);
   void check(const Page& page, CheckConfig wanted);
-  void change(Page& page, const ChangeFile& wanted);
+  void change(Page& page, const ChangeFile& wanted, Duration age);
   void askHelper(Page& page, std::int64_t seq, const Result<std::string>& may,
                  const client::FileRequest& request);
   void publishFileAnswer(Page& page);
@@ -108,6 +108,7 @@ class Hub {
   void publishTests(MonotonicTime now);
   [[nodiscard]] std::string downNow() const;
   [[nodiscard]] std::string whyNotMoving(const Page& page) const;
+  [[nodiscard]] static std::string whyTooLate(Duration age);
   /// Each signal that a page draws, once.
   [[nodiscard]] std::vector<link::TraceSignal> viewedSignals() const;
   [[nodiscard]] bool hasRoomFor(const link::TraceSignal& signal) const;

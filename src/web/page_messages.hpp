@@ -21,7 +21,7 @@ namespace rc10::web {
 
 /// Version of the messages between this server and its page, which come from one package: a page that was
 /// loaded before an upgrade loads itself anew.
-inline constexpr int kPageProtocol = 2;
+inline constexpr int kPageProtocol = 3;
 
 // Messages to a page, one JSON object each with its "type".
 

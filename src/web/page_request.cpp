@@ -91,6 +91,11 @@ Result<PageRequest> operationOf(const Received& object) {
   ask.target = textOf(object, "target");
   if (ask.operation.empty() || ask.operation.size() >= sizeof(link::Request::operation))
     return fail("'operation' is missing or too long");
+  if (const auto known = operationNamed(ask.operation); !known || !stops(*known)) {
+    const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+    if (!sent_us) return tl::unexpected(sent_us.error());
+    ask.sent = std::chrono::microseconds{*sent_us};
+  }
   if (ask.target.size() >= sizeof(link::Request::target)) return fail("'target' is too long");
   if (const auto* values = memberOf(object, "values"); values != nullptr) {
     if (!values->is_object() || values->size() > link::kMaxValues)
@@ -234,8 +239,12 @@ Result<PageRequest> configCheckOf(const Received& object) {
 
 Result<PageRequest> changeOf(const Received& object, client::FileVerb verb) {
   const auto seq = wholeOf(object, "seq", 0, kMaxExact);
-  if (!seq) return tl::unexpected(seq.error());
-  ChangeFile change{.seq = *seq, .verb = verb, .text = {}, .replaces = {}};
+  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+  for (const auto* each : {&seq, &sent_us}) {
+    if (!*each) return tl::unexpected(each->error());
+  }
+  ChangeFile change{
+      .seq = *seq, .sent = std::chrono::microseconds{*sent_us}, .verb = verb, .text = {}, .replaces = {}};
   if (verb == client::FileVerb::kRestart) return change;
   const auto* text = memberOf(object, "text");
   if (text == nullptr || !text->is_string()) return fail("'text' is missing");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,6 +37,8 @@ struct AskRange {
 /// An operation of rc10d, as rc10ctl's verbs send it.
 struct AskRobot {
   std::int64_t seq = 0;
+  std::optional<Duration> sent =
+      std::nullopt;  ///< By the page's clock. Empty: one that stops, which never is too late.
   std::string operation;
   std::string target;
   std::vector<std::pair<std::string, double>> values;
@@ -107,6 +110,7 @@ struct CheckConfig {
 /// The root helper is asked to install this text, or to restart rc10d.
 struct ChangeFile {
   std::int64_t seq = 0;
+  Duration sent{};  ///< By the page's clock.
   client::FileVerb verb = client::FileVerb::kInstall;
   std::string text;
   std::string replaces;  ///< SHA-256 of the text that it was made of; empty: of what config shows now.

@@ -112,6 +112,24 @@ TEST_F(MotionMatchTest, AGapIsNotMeasuredAcross) {
   EXPECT_NEAR(*match.lagSeconds(), 0.020, 1e-6);
 }
 
+TEST_F(MotionMatchTest, ASensorThatWasAwayLongEnoughToBeMountedAnewIsFoundAnew) {
+  const auto away = [this](int ticks) {
+    for (int i = 0; i < ticks; ++i) match.step(10.0, std::numeric_limits<double>::quiet_NaN(), dt_s);
+    past.clear();
+  };
+  run(1.0);
+  away(1900);
+  EXPECT_EQ(match.sign(), Sign::kAgrees);
+  run(0.01);
+  away(2001);
+  EXPECT_EQ(match.sign(), Sign::kUnknown);
+  sign = -1.0;
+  run(1.0);
+  EXPECT_EQ(match.sign(), Sign::kOpposed);
+  away(5000);
+  EXPECT_EQ(match.sign(), Sign::kOpposed) << "a loose plug mends no sign";
+}
+
 TEST_F(MotionMatchTest, AnAngleThatWrapsIsNoJump) {
   match = MotionMatch{{.enough = 0.1, .circular_period = 360.0}};
   for (int i = 0; i < 2000; ++i) {

@@ -137,7 +137,7 @@ TEST_F(DrivenRobot, TheRemoteEnablesTheRobotAndBeatsThePlannerInTheNextTick) {
   EXPECT_EQ(owner(), "remote");
   EXPECT_NEAR(output(kVx), 1.0, 0.05);
   remote_.left_switch = Dr16Input::Switch::kDown;
-  run(30);
+  run(50);
   EXPECT_TRUE(allAre(MotorStatus::kReady));
   EXPECT_EQ(owner(), "planner") << "who may go on as soon as the remote has let go";
 }

@@ -1,5 +1,5 @@
 """Drives of every family that fall silent, restart, report a fault, or have another id."""
-# run-guest: --timeout 900
+# run-guest: --timeout 1200
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """Drives of every family: commanded by somebody else, taken for another, turned while off."""
-# run-guest: --timeout 900
+# run-guest: --timeout 1200
 
 from __future__ import annotations
 

@@ -159,6 +159,7 @@ def switch_down(robot: rc10.Robot, remote: FakeDr16) -> None:
         ),
         "a remote with the switch down",
     )
+    let_pass(robot, 0.05)  # two frames
 
 
 def test_a_remote_that_is_lost_in_motion(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 """The daemon's process: signals, stalls, clocks, files."""
-# run-guest: --timeout 900
+# run-guest: --timeout 1200
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """Torque that nobody asked for: rest, foreign frames, groups, e-stops, fields, the turn."""
-# run-guest: --timeout 900
+# run-guest: --timeout 1200
 
 from __future__ import annotations
 

@@ -253,6 +253,22 @@ def test_the_end_of_a_target_can_be_chosen(lift: Daemon) -> None:
     assert ready["stopped_by"] == "rc10ctl"
 
 
+def test_a_motor_that_obeys_somebody_else_is_not_disabled_at_the_end(daemon: Daemon) -> None:
+    daemon.must("enable", "wheel")
+    with rc10.connect("host", client="tester", priority=5) as robot:
+        robot.wait_for_state()
+        robot.command(wheel=rc10.velocity_rpm(20), validity_ms=1000)
+        daemon.wait_motor("wheel", lambda motor: motor["owner"] == "tester", "is driven")
+        with daemon.drive("set", "wheel", "velocity", "5", "--then", "disable") as refused:
+            while refused.running:
+                robot.command(wheel=rc10.velocity_rpm(20), validity_ms=1000)
+                robot.spin(0.05)
+            assert refused.wait() == 1
+            assert "is held by" in refused.output
+        wheel = daemon.wait_motor("wheel", lambda motor: motor["owner"] == "tester", "is driven")
+        assert wheel["status"] == "ACTIVE"
+
+
 def test_the_next_rc10ctl_gets_the_motor_at_once(daemon: Daemon) -> None:
     daemon.must("enable", "wheel")
     for rpm in (30, -30, 60):

@@ -114,7 +114,8 @@ class Page:
     def ask(self, operation: str, target: str = "", **values: float) -> dict[str, Any]:
         self.seq += 1
         seq = self.seq
-        self.send(type="request", seq=seq, operation=operation, target=target, values=values)
+        words = {"operation": operation, "target": target, "values": values}
+        self.send(type="request", seq=seq, sent_us=time.monotonic_ns() // 1000, **words)
         return self.wait("response", lambda answer: answer["seq"] == seq)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -27,10 +28,14 @@ def helper(tmp_path: Path) -> Iterator[FileHelper]:
         yield helper
 
 
+def now_us() -> int:
+    return time.monotonic_ns() // 1000
+
+
 def change(page: Page, kind: str, **message: str) -> dict[str, Any]:
     page.seq += 1
     seq = page.seq
-    page.send(type=kind, seq=seq, **message)
+    page.send(type=kind, seq=seq, sent_us=now_us(), **message)
     return page.wait("response", lambda answer: answer["seq"] == seq)
 
 
@@ -62,8 +67,8 @@ def test_a_change_goes_on_alone(daemon: Daemon, tmp_path: Path, helper: FileHelp
     web = Web(daemon, tmp_path, "--config-socket", str(helper.path))
     with web.program, web.page() as page:
         page.wait("state")
-        page.send(type="config_install", seq=501, text="robot: host\n")
-        page.send(type="config_restart", seq=502)
+        page.send(type="config_install", seq=501, sent_us=now_us(), text="robot: host\n")
+        page.send(type="config_restart", seq=502, sent_us=now_us())
         answers = [page.wait("response") for _ in range(2)]
     assert {answer["seq"]: answer["status"] for answer in answers} == {501: "ok", 502: "refused"}
     assert [request.verb for request in helper.requests] == ["install"]

@@ -166,11 +166,12 @@ KP = "velocity_pid.kp_a_per_rpm"
 
 # It tries a gain, as the search of the page does, and waits to be killed.
 SEARCH = f"""
-import json, sys
+import json, sys, time
 from websockets.sync.client import connect
 with connect(sys.argv[1], max_size=None) as page:
     page.send(json.dumps({{"type": "request", "seq": 1, "operation": "set_gains", "target": "wheel",
-                          "values": json.loads(sys.argv[2])}}))
+                          "values": json.loads(sys.argv[2]),
+                          "sent_us": time.monotonic_ns() // 1000}}))
     while True:
         data = page.recv(timeout={PATIENCE_S})
         told = {{}} if isinstance(data, bytes) else json.loads(data)

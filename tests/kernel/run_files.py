@@ -41,6 +41,12 @@ stopped: list[int] = []
 # Records that a test file leaves in $RC10_SCRATCH/records.jsonl go to $RC10_RECORDS/<file>.jsonl.
 
 
+def time_limit_s(file: Path) -> int:
+    """Real time that a file asks for: the longer it runs, the more."""
+    asked = re.search(r"^# run-guest: .*--timeout (\d+)", file.read_text(), re.MULTILINE)
+    return int(asked[1]) if asked else 300
+
+
 def run_file(file: Path, pytest_options: list[str]) -> summary.Counts:
     """Run a file's tests in a guest, or in two if it asks for that."""
     twice = TWICE.search(file.read_text())
@@ -108,14 +114,15 @@ def stop(number: int, _frame: FrameType | None) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--jobs", type=int, default=int(os.environ.get("RC10_JOBS", 2)))
+    processors = len(os.sched_getaffinity(0))
+    parser.add_argument("--jobs", type=int, default=int(os.environ.get("RC10_JOBS") or processors))
     parser.add_argument("files", nargs="*", type=Path)
     # Arguments after "--" are pytest's.
     end = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
     arguments = parser.parse_args(sys.argv[1:end])
     files = [file.resolve() for file in arguments.files] or sorted(HERE.glob("test_*.py"))
-    # A long file that starts last runs alone.
-    files.sort(key=lambda file: file.stat().st_size, reverse=True)
+    # A long file that starts last would run alone.
+    files.sort(key=time_limit_s, reverse=True)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
     with ThreadPoolExecutor(arguments.jobs) as pool:

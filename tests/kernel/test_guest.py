@@ -173,6 +173,14 @@ def test_process_output_is_read_as_events() -> None:
         assert process.stop() == -15
 
 
+@pytest.mark.parametrize("order", ["one two", "two one"])
+def test_lines_of_several_threads_are_read_in_any_order(order: str) -> None:
+    with Proc("bash", "-c", f"printf '%s\\n' {order} three; sleep 1000") as process:
+        found = process.wait_lines("^one$", "^two$", timeout_s=5)
+        assert [match[0] for match in found] == ["one", "two"]
+        process.wait_line("three")
+
+
 def test_wait_for_counts_virtual_seconds() -> None:
     start = time.monotonic()
     with pytest.raises(TimeoutError):

@@ -272,6 +272,25 @@ TEST_F(HeadingSensor, ThatTurnsWithThemIsUsedWhateverPushesTheRobot) {
   EXPECT_NEAR(std::remainder(output(kHeading) - past_.back() - pushed_deg_, 360.0), 0.0, 2.0);
 }
 
+TEST_F(HeadingSensor, ThatWasMountedAnewWhileTheMotorsWereDisabledIsComparedAgain) {
+  buildWithHeading();
+  give({.wz_deg_s = 90.0});
+  turn(1.0, 1000);
+  ASSERT_TRUE(events_.empty());
+  for (auto& motor : robot_->motors()) motor.status = MotorStatus::kReady;
+  turn(1.0, 10);
+  turn(-1.0, 10);
+  for (auto& motor : robot_->motors()) motor.status = MotorStatus::kActive;
+  turn(-1.0, 1000);
+  EXPECT_THAT(events_, ::testing::ElementsAre(0U));
+  for (auto& motor : robot_->motors()) motor.status = MotorStatus::kReady;
+  turn(-1.0, 10);
+  for (auto& motor : robot_->motors()) motor.status = MotorStatus::kActive;
+  const double heading_deg = output(kHeading);
+  turn(-1.0, 10);
+  EXPECT_NEAR(output(kHeading), heading_deg, 2.0) << "one of the wrong sign stays out";
+}
+
 TEST_F(HeadingSensor, ThatStandsWhileTheWheelsSlipIsNoWrongSign) {
   buildWithHeading();
   give({.wz_deg_s = 90.0});
@@ -415,6 +434,31 @@ TEST_F(Chassis, AnAngleThatJumpsIsNoWay) {
   for (std::size_t i = 0; i < 4; ++i) robot_->motor(i).feedback.total_angle_deg = kNoSignal;
   run(2);
   EXPECT_EQ(output(kX), 0.0);
+}
+
+TEST_F(Chassis, AtTheEndOfAFieldOfAnglesTheSpeedTellsTheWay) {
+  buildMecanum();
+  run(1);
+  give({.vx_m_s = 0.5});
+  run(1000);
+  const double before_m = output(kX);
+  for (int i = 0; i < 1000; ++i) {
+    for (auto& motor : robot_->motors()) {
+      motor.feedback.angle_at_end = true;
+      motor.feedback.total_angle_deg = 3200.0;
+    }
+    run(1);
+  }
+  EXPECT_NEAR(output(kX) - before_m, 0.5, 0.01);
+}
+
+TEST_F(Chassis, AFrameThatIsNoNumberOfOneIsTheRobots) {
+  buildMecanum();
+  for (const double frame : {1e20, -1e20, 0.5, 3.0}) {
+    give({.vx_m_s = 0.1, .frame = frame, .heading_deg = 90.0});
+    run(100);
+    EXPECT_NEAR(output(kVx), 0.1, 1e-3) << frame;
+  }
 }
 
 TEST_F(Chassis, OldFeedbackSaysNothing) {

@@ -149,6 +149,48 @@ TEST_F(Feeder, ShotsThatCannotBeFiredNowAreNotFiredLater) {
   EXPECT_EQ(state(), kIdle);
 }
 
+TEST_F(Feeder, ShotsEndWhereTheMotorHasNoAngle) {
+  auto& feedback = robot_.motor(0).feedback;
+  feedback.total_angle_deg = kNoSignal;
+  ask(kNoSignal, 7.0);
+  run(2);
+  ask(kNoSignal, 9.0);
+  run(10);
+  EXPECT_EQ(state(), kFeeding);
+  run(300);
+  EXPECT_EQ(state(), kIdle) << "90 degrees at 60 rpm take 250 ms";
+}
+
+TEST_F(Feeder, ShotsEndWhereTheFieldOfTheAngleEnds) {
+  auto& motor = robot_.motor(0);
+  ask(kNoSignal, 7.0);
+  run(2);
+  ask(kNoSignal, 9.0);
+  motor.feedback.angle_at_end = true;
+  for (int i = 0; i < 300; ++i) {
+    motor.feedback.total_angle_deg = 3200.0;
+    run(1);
+  }
+  EXPECT_EQ(state(), kIdle);
+}
+
+TEST_F(Feeder, ANewReferenceOfTheAngleIsNoShot) {
+  auto& feedback = robot_.motor(0).feedback;
+  feedback.total_angle_deg = 3600.0;
+  ask(kNoSignal, 7.0);
+  run(2);
+  ask(kNoSignal, 9.0);
+  run(10);
+  feedback.total_angle_deg -= 3600.0;
+  run(10);
+  EXPECT_LE(module_->outputs()[1], 2.0);
+  feedback.total_angle_deg += 3600.0;
+  run(10);
+  EXPECT_EQ(state(), kFeeding);
+  run(300);
+  EXPECT_EQ(state(), kIdle);
+}
+
 TEST_F(Feeder, SilenceAsksNothingOfTheMotor) {
   ask(30.0);
   run(10);

@@ -505,6 +505,30 @@ TEST_F(LateGimbal, EnablingAgainComparesAgain) {
   EXPECT_NEAR(pitch(), -5.0, 0.2);
 }
 
+TEST_F(LateGimbal, ASensorThatWasTurnedOverWhileTheMotorsWereDisabledIsFound) {
+  build(7);
+  run(300);
+  aim(20.0, 5.0);
+  run(2000);
+  ASSERT_EQ(output(kAgrees), 1.0);
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  run(10);
+  yaw_sign_ = rate_sign_ = pitch_sign_ = -1.0;
+  run(10);
+  module_->clearInputs();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kActive;
+  run(300);
+  aim(20.0, -5.0);
+  double farthest_deg = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    run(1);
+    farthest_deg = std::max(farthest_deg, std::fabs(pitch()));
+  }
+  EXPECT_LT(farthest_deg, 9.0);
+  EXPECT_EQ(output(kAgrees), 0.0);
+  EXPECT_NEAR(pitch(), -5.0, 0.5) << "by the motor";
+}
+
 TEST_F(LateGimbal, ATakeoverForgetsNoWrongSign) {
   findAnOpposedPitch();
   ASSERT_EQ(output(kAgrees), 0.0);

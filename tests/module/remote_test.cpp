@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -75,7 +76,7 @@ class Remote : public ::testing::Test {
   }
   void armSwitch(Dr16Input::Switch position) {
     dbus_.left_switch = position;
-    run(30);
+    run(60);  // four frames: the first one only shows where frames begin
   }
   void arm() {
     armSwitch(Dr16Input::Switch::kDown);
@@ -129,6 +130,28 @@ TEST_F(Remote, TheSwitchGoingDownWhereNothingIsOnLetsGoOfNothing) {
   armSwitch(Dr16Input::Switch::kMiddle);
   ASSERT_FALSE(asked_.empty());
   EXPECT_EQ(asked_.front().request, RobotRequest::kDisableUnasked);
+}
+
+TEST_F(Remote, OneDamagedFrameIsNoMoveOfTheSwitch) {
+  build();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  const auto damaged = [this](Dr16Input::Switch position) {
+    const auto before = std::exchange(dbus_.left_switch, position);
+    run(14);
+    dbus_.left_switch = before;
+    run(60);
+  };
+  armSwitch(Dr16Input::Switch::kDown);
+  damaged(Dr16Input::Switch::kUp);
+  EXPECT_THAT(asked_, IsEmpty());
+  EXPECT_EQ(armed(), 0.0);
+  arm();
+  ASSERT_EQ(armed(), 1.0);
+  asked_.clear();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kActive;
+  damaged(Dr16Input::Switch::kDown);
+  EXPECT_THAT(asked_, IsEmpty());
+  EXPECT_EQ(armed(), 1.0);
 }
 
 TEST_F(Remote, TheEndOfAnEstopEnablesNothing) {

@@ -235,8 +235,12 @@ TEST(CubemarsMit, APositionFieldThatIsCutOffLosesTheReference) {
   (void)bench.feedMit(12.49);
   (void)bench.feedMit(12.5);
   EXPECT_TRUE(bench.motor().feedback().zeroed);
+  EXPECT_FALSE(bench.motor().feedback().angle_at_end);
   (void)bench.feedMit(12.5);
   EXPECT_FALSE(bench.motor().feedback().zeroed);
+  EXPECT_TRUE(bench.motor().feedback().angle_at_end);
+  (void)bench.feedMit(12.0);
+  EXPECT_FALSE(bench.motor().feedback().angle_at_end);
 }
 
 TEST(CubemarsMit, WithoutFreshFeedbackNothingButNoTorqueIsSent) {

@@ -141,6 +141,10 @@ TEST(RobStrideMotor, TheEndOfAScaleThatDoesNotWrapLosesTheReference) {
   bench.now += milliseconds{2};
   bench.run(13.0);
   EXPECT_FALSE(bench.motor.feedback().zeroed);
+  EXPECT_TRUE(bench.motor.feedback().angle_at_end);
+  bench.now += milliseconds{2};
+  bench.run(12.4);
+  EXPECT_FALSE(bench.motor.feedback().angle_at_end);
 }
 
 TEST(RobStrideMotor, ALongSilenceLosesTheReferenceOfACyberGear) {

@@ -38,8 +38,8 @@ def test_commands_share_no_processor_while_one_is_left_and_then_may_use_all(
     for process, _ in [*running, (one_more, "")]:
         end(process)
     assert sorted(int(processor) for _, processor in running) == sorted(allowed)
-    all_of_them = Path("/proc/self/status").read_text().split("Cpus_allowed_list:")[1].split()[0]
-    assert its_processors == all_of_them
+    status = Path("/proc/self/status").read_text()
+    assert its_processors == status.split("Cpus_allowed_list:")[1].split()[0]
 
 
 def test_a_processor_is_given_back_at_the_end_of_a_command(tmp_path: Path) -> None:
@@ -47,6 +47,7 @@ def test_a_processor_is_given_back_at_the_end_of_a_command(tmp_path: Path) -> No
     end(first)
     second, the_next_ones = start(tmp_path)
     end(second)
+    assert its_processor.isdigit()
     assert its_processor == the_next_ones
 
 

@@ -154,6 +154,20 @@ def test_a_bare_machine_reads_what_comes_and_how_long_before_the_packages(tmp_pa
     assert run.returncode != 0
 
 
+@pytest.mark.parametrize(("part", "told"), [("vm", True), ("pages", False)])
+def test_a_kernel_among_the_packages_is_told_before_they_are_installed(
+    part: str, told: bool, tmp_path: Path
+) -> None:
+    for program, text in (("dpkg-query", "exit 0"), ("apt-get", "exit 1"), ("sudo", "exit 1")):
+        (tmp_path / program).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / program).chmod(0o755)
+    bare = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    run = subprocess.run(
+        [REPO / "scripts" / "test.sh", part], env=bare, capture_output=True, text=True, check=False
+    )
+    assert ("PREEMPT_RT kernel, which GRUB may start" in run.stdout) == told
+
+
 @pytest.mark.parametrize("name", ["default", "ci", "all"])
 def test_the_table_of_sets_quotes_the_budget(name: str) -> None:
     budget = json.loads((PARTS / "budget.json").read_text())
@@ -166,9 +180,9 @@ def test_the_table_of_sets_quotes_the_budget(name: str) -> None:
 @pytest.mark.parametrize(
     ("page", "words"),
     [
-        ("README.md", "{} minutes the first time"),
+        ("README.md", " {} minutes the first time"),
         ("README.zh-CN.md", "第一次 {} 分钟"),
-        ("docs/quick-start.md", "{} minutes as long as nothing has been compiled"),
+        ("docs/quick-start.md", " {} minutes as long as nothing has been compiled"),
         ("docs/quick-start.zh-CN.md", "在什么都没编译过时要 {} 分钟"),
     ],
 )

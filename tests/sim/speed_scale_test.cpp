@@ -1,6 +1,7 @@
 // Speed scale of every family whose drives report speed as a share of a range: its plausibility.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -33,7 +34,8 @@ void rescale(CanFrame& frame, std::size_t byte, unsigned bits, double ratio) {
   const unsigned word = static_cast<unsigned>(frame.data[byte]) << 8U | frame.data[byte + 1];
   const double middle = 0.5 * static_cast<double>((1U << bits) - 1);
   const double code = middle + ratio * (static_cast<double>(word >> unused) - middle);
-  const unsigned told = static_cast<unsigned>(std::lround(code)) << unused | (word & ((1U << unused) - 1));
+  const double within = std::clamp(code, 0.0, 2.0 * middle);
+  const unsigned told = static_cast<unsigned>(std::lround(within)) << unused | (word & ((1U << unused) - 1));
   frame.data[byte] = static_cast<std::uint8_t>(told >> 8U);
   frame.data[byte + 1] = static_cast<std::uint8_t>(told & 0xFFU);
 }
@@ -137,6 +139,18 @@ TEST_P(SpeedScale, ADriveOnItsOwnScaleOrSomewhatOffIsNot) {
   }
 }
 
+class EndOfASpeedField : public SpeedScale {};
+
+TEST_P(EndOfASpeedField, TheSpeedTellsNoScaleThere) {
+  SoloRig rig = GetParam().rig(MotorSettings{}.scale_error);
+  rig.comeOnline();
+  ASSERT_TRUE(rig.enable());
+  rig.garble([](CanFrame& frame) { GetParam().rescale(frame, 1e6); });
+  rig.command(GetParam().target);
+  rig.run(seconds{1});
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+}
+
 TEST_P(SpeedScale, TheThresholdIsTheUsersAndZeroIsNone) {
   EXPECT_EQ(complaintAt(1.15, 0.1).fault, FaultCode::kDriveSetting);
   EXPECT_EQ(complaintAt(1.3, 0.4).fault, FaultCode::kNone);
@@ -144,6 +158,11 @@ TEST_P(SpeedScale, TheThresholdIsTheUsersAndZeroIsNone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, SpeedScale, testing::ValuesIn(kSubjects),
+                         [](const auto& each) { return std::string{each.param.name}; });
+
+// That of a Damiao goes round at its ends: see DamiaoSpeed.
+INSTANTIATE_TEST_SUITE_P(Families, EndOfASpeedField,
+                         testing::Values(kSubjects[2], kSubjects[3], kSubjects[4]),
                          [](const auto& each) { return std::string{each.param.name}; });
 
 // A family that reports shares of a range belongs into the table above.

@@ -28,7 +28,7 @@ SERVER = """
                 this.readyState = serverIsThere ? 1 : 3;
                 if (!serverIsThere) return this.onclose?.();
                 this.onopen?.();
-                this.say({type: 'hello', protocol: 2, version: '', right: 'look', name: 'web-1'});
+                this.say({type: 'hello', protocol: 3, version: '', right: 'look', name: 'web-1'});
             }, 10);
         }
         say(message) { this.onmessage?.({data: JSON.stringify(message)}); }

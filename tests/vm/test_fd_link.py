@@ -99,16 +99,19 @@ def test_a_classic_interface_becomes_one_for_fd_and_stays_so(tmp_path: Path) -> 
         assert re.search(r"can2 FD mode.*on, data phase 5000 kbit/s", findings.output())
 
         set_up("can2", "dbitrate 2000000 fd on", unseen_by=process)
-        process.wait_line(
+        process.wait_lines(
             "can2 is set to 2000000 bit/s in the data phase, the configuration says 5000000: "
             "can2 taken down and up at 1000000 bit/s, data 5000000 bit/s",
-            PATIENCE_S,
+            READY,
+            timeout_s=PATIENCE_S,
         )
         wait_for(is_as_configured, PATIENCE_S, "the configured data bit rate", poll_s=0.1)
 
         set_up("can2", "fd off listen-only on", unseen_by=process)
-        process.wait_line(
-            "can2 has CAN FD off, the configuration has data_bitrate: can2 taken down", PATIENCE_S
+        process.wait_lines(
+            "can2 has CAN FD off, the configuration has data_bitrate: can2 taken down",
+            READY,
+            timeout_s=PATIENCE_S,
         )
         wait_for(is_as_configured, PATIENCE_S, "CAN FD", poll_s=0.1)
 

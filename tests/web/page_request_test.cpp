@@ -30,13 +30,26 @@ TEST(PageRequest, AViewHasItsSignalsWidthAndSpan) {
 
 TEST(PageRequest, AnOperationHasItsTargetAndValues) {
   const auto ask = parsed<AskRobot>(
-      R"({"type":"request","seq":9,"operation":"zero","target":"yaw","values":{"angle_deg":-12.5}})");
+      R"({"type":"request","seq":9,"sent_us":5000,"operation":"zero","target":"yaw","values":{"angle_deg":-12.5}})");
   EXPECT_EQ(ask.seq, 9);
+  EXPECT_EQ(ask.sent, std::chrono::milliseconds{5});
   EXPECT_EQ(ask.operation, "zero");
   EXPECT_EQ(ask.target, "yaw");
   ASSERT_EQ(ask.values.size(), 1U);
   EXPECT_EQ(ask.values[0].first, "angle_deg");
   EXPECT_EQ(ask.values[0].second, -12.5);
+}
+
+TEST(PageRequest, OnlyWhatStopsNeedsNoTime) {
+  EXPECT_FALSE(parsed<AskRobot>(R"({"type":"request","seq":9,"operation":"disable","sent_us":1})").sent);
+  for (const auto* text :
+       {R"({"type":"request","seq":9,"operation":"enable","target":"yaw"})",
+        R"({"type":"request","seq":9,"operation":"clear","sent_us":"now"})",
+        R"({"type":"config_install","seq":9,"text":"robot: a"})", R"({"type":"config_restart","seq":9})"}) {
+    const auto request = parsePageRequest(text);
+    ASSERT_FALSE(request) << text;
+    EXPECT_THAT(request.error().message, ::testing::HasSubstr("sent_us")) << text;
+  }
 }
 
 TEST(PageRequest, AnEstopCountsWhateverElseItsMessageSays) {
@@ -224,9 +237,10 @@ TEST(PageRequest, WhatIsWrongIsRefusedInWords) {
            R"({"type":"request","seq":1,"operation":""})",
            R"({"type":"request","operation":"enable"})",
            R"({"type":"request","seq":1,"operation":")" + long_text + "\"}",
-           R"({"type":"request","seq":1,"operation":"enable","target":")" + long_text + "\"}",
-           R"({"type":"request","seq":1,"operation":"zero","values":{"angle_deg":"1"}})",
-           R"({"type":"request","seq":1,"operation":"zero","values":{")" + long_text + R"(":1}})"}) {
+           R"({"type":"request","seq":1,"sent_us":1,"operation":"enable","target":")" + long_text + "\"}",
+           R"({"type":"request","seq":1,"sent_us":1,"operation":"zero","values":{"angle_deg":"1"}})",
+           R"({"type":"request","seq":1,"sent_us":1,"operation":"zero","values":{")" + long_text +
+               R"(":1}})"}) {
     const auto request = parsePageRequest(text);
     EXPECT_FALSE(request) << text.substr(0, 80);
     if (!request) {

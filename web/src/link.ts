@@ -52,6 +52,7 @@ const kScanPatienceMs = 95_000;
 const kBeatMs = 500;
 const kSilentBeats = 4;
 const kLostBeats = 8;
+const kSleepMs = 1000;
 const kMostRecordingBytes = 256 * 1024 * 1024;
 
 type Listener = () => void;
@@ -123,6 +124,8 @@ export class Link {
   private tokens = 0;
   private beats = 0;
   private unheardBeats = 0;
+  /** When this page's clock was 0. */
+  private zeroMs = Date.now() - performance.now();
   private statelessBeats = 0;
   private drawn = false;
 
@@ -319,7 +322,8 @@ export class Link {
       };
       const timer = setTimeout(() => done(failure(seq, 'no answer')), patienceMs);
       this.open.set(seq, done);
-      if (!this.send({ ...message, seq })) done(failure(seq, 'no connection'));
+      // rc10-web does nothing for a message that was held up.
+      if (!this.send({ ...message, seq, sent_us: now_us() })) done(failure(seq, 'no connection'));
     });
   }
 
@@ -359,8 +363,12 @@ export class Link {
   /** A cable that is out closes no connection: silence does. */
   private beat(): void {
     const { socket, known } = this;
+    // A computer that slept: performance.now(), by which messages have their age, stood still meanwhile.
+    const zeroMs = Date.now() - performance.now();
+    const slept = Math.abs(zeroMs - this.zeroMs) > kSleepMs;
+    this.zeroMs = zeroMs;
     if (socket === null) return;
-    if (++this.unheardBeats > kLostBeats) {
+    if (slept || ++this.unheardBeats > kLostBeats) {
       socket.onopen = socket.onmessage = socket.onclose = null;
       socket.close();
       return this.lost();

@@ -2,7 +2,7 @@
 
 import type { TestReport } from './motion_test';
 
-export const kProtocol = 2;
+export const kProtocol = 3;
 
 export type Right = 'nothing' | 'look' | 'command';
 

@@ -2,7 +2,9 @@ import type { Link } from './link';
 
 /** rc10-web gives no more columns at a time. */
 export const kMostColumns = 4096;
-const kPatienceMs = 6000;
+/** An answer is left out when this page reads too slowly: then it is asked for again. */
+const kPatienceMs = 2000;
+const kTries = 3;
 
 /** Each tick of the past of the signals of this view, piece by piece; NaN: not reported. Null: no answer. */
 export function ticksOf(
@@ -11,6 +13,7 @@ export function ticksOf(
 ): Promise<Float32Array[] | null> {
   const values = Array.from({ length: of.signals }, () => new Float32Array(of.count));
   let got = 0;
+  let tries = 0;
   return new Promise((resolve) => {
     let timer = 0;
     const end = (result: Float32Array[] | null) => {
@@ -20,7 +23,7 @@ export function ticksOf(
     };
     const ask = () => {
       clearTimeout(timer);
-      timer = window.setTimeout(() => end(null), kPatienceMs);
+      timer = window.setTimeout(() => (++tries < kTries ? ask() : end(null)), kPatienceMs);
       link.range(of.first + got, of.period_us, Math.min(kMostColumns, of.count - got));
     };
     const forget = link.addColumns((received) => {
@@ -30,6 +33,7 @@ export function ticksOf(
       // Two ticks in one column, of which one was late: a value that was there, not their mean.
       received.max.forEach((row, i) => values[i]?.set(row, got));
       got += received.count;
+      tries = 0;
       if (got < of.count) ask();
       else end(values);
     });

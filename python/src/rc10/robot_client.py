@@ -379,10 +379,9 @@ class RobotClient:
         # The daemon refuses a whole message for one motor that it no longer has.
         state = self._inbox.state
         gone = set() if state is None else (self._commanded | self._enabled) - {*state.motors, _ALL}
-        # Torque first: that needs no answer.
-        motors = sorted(self._commanded - gone)
-        if motors and self._at_end == "coast":
-            self._publish_command({name: coast() for name in motors}, validity_ms=0)
+        if self._at_end == "coast":  # torque first: that needs no answer
+            for motor in sorted(self._commanded - gone):  # each by itself: see _lapse()
+                self._publish_command({motor: coast()}, validity_ms=0)
         if _ALL in self._enabled:
             return ""
         if self._at_end == "disable":
@@ -393,12 +392,13 @@ class RobotClient:
         """Has the targets in force end now, not at the end of their validity.
 
         The same targets, and not COAST: after that the daemon would have nothing to do in their
-        stead. Motors that are disabled do their on_disable instead.
+        stead. Motors that are disabled do their on_disable instead. Each by itself: a message is
+        refused whole for one that another client has taken.
         """
         known = None if self._inbox.state is None else self._inbox.state.motors
         last = self._in_force.at(self._link.now(), known, disabled)
-        if last:
-            self._publish_command(last, validity_ms=1)
+        for name, setpoint in last.items():
+            self._publish_command({name: setpoint}, validity_ms=1)
 
     @contextmanager
     def _hearing(self) -> Iterator[None]:

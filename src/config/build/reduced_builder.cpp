@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "config/build/shaping_builder.hpp"
 #include "config/yaml/number_text.hpp"
 
 namespace rc10 {
@@ -27,6 +28,7 @@ void readVelocity(MotorParse& in) {
   const auto given = in.settings.find("reduced_velocity_rpm");
   if (!given) return;
   in.settings.read("reduced_velocity_rpm", reduced.velocity_rpm);
+  refuseWithoutBrake(in, "reduced_velocity_rpm");
   reduced.full_rpm = fullRpm(in);
   reduced.tolerance_rpm = kTolerance * reduced.velocity_rpm + in.draft.config.standstill_rpm;
   in.settings.read("velocity_slew_rpm_per_s", reduced.slew_rpm_per_s);

@@ -1,7 +1,7 @@
 #include "config/build/shaping_builder.hpp"
 
 #include <cmath>
-#include <variant>
+#include <string>
 
 #include "app/units.hpp"
 
@@ -32,6 +32,24 @@ void warnOfTurn(MotorParse& in) {
 }
 
 }  // namespace
+
+bool slowsDown(const ShapingConfig& shaping) noexcept {
+  return shaping.has_velocity_loop || shaping.approach_effort_per_rpm > 0.0F || shaping.effort_per_rpm > 0.0F;
+}
+
+void refuseWithoutBrake(MotorParse& in, std::string_view key) {
+  const auto given = in.settings.find(key);
+  const auto& modes = in.traits.modes;
+  const bool pushes = modes.contains(ControlMode::kCurrent) || modes.contains(ControlMode::kVoltage) ||
+                      modes.contains(ControlMode::kDuty);
+  if (!given || !pushes || slowsDown(in.draft.config.shaping)) return;
+  const std::string remedy = in.settings.mentions("group") ? ", or use group: false" : "";
+  in.problems.error(
+      given->place(), given->path,
+      "nothing could slow the motor down there: it has no velocity loop, and how fast a current "
+      "turns it is not known; give velocity_limit_rpm" +
+          remedy);
+}
 
 void readShaping(MotorParse& in) {
   ShapingConfig& shaping = in.draft.config.shaping;
@@ -64,8 +82,8 @@ void readShaping(MotorParse& in) {
     shaping.approach_rpm_per_deg = kNativeApproach;
   }
   if (in.traits.host_loops != nullptr && !in.traits.own_velocity_loop) {
-    shaping.approach_effort_per_rpm =
-        std::visit([](const auto& pid) { return pid.kp; }, in.motor().loops.velocity);
+    shaping.approach_effort_per_rpm = velocityKp(in.motor().loops);
+    shaping.approach_effort_is_gain = true;
   } else if (in.noLoadRpm() > 0.0) {
     shaping.approach_effort_per_rpm =
         in.traits.effort_full_scale / (kFullEffort * static_cast<float>(in.noLoadRpm()));
@@ -76,6 +94,7 @@ void readShaping(MotorParse& in) {
   if (in.byVoltage() && in.noLoadRpm() > 0.0)
     shaping.effort_per_rpm = in.traits.effort_full_scale / static_cast<float>(in.noLoadRpm());
   in.refuseUnordered(in.settings, "angle_min_deg", "angle_max_deg");
+  for (const char* key : {"angle_min_deg", "angle_max_deg"}) refuseWithoutBrake(in, key);
   warnOfTurn(in);
 }
 

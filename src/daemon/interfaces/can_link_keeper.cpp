@@ -39,7 +39,8 @@ void CanLinkKeeper::check(MonotonicTime now, std::bitset<kMaxBuses> came_up) {
   for (std::size_t i = 0; i < robot_.buses().size(); ++i) {
     const auto& entry = robot_.buses()[i];
     if (entry.interface.empty()) continue;
-    if (came_up[i]) checkSettings(i, now);
+    // The link is shown as down until the reviver's next look: that is no trouble.
+    if (came_up[i] && mendSettings(i, now)) continue;
     const auto state = inboxes_[i].state.load(std::memory_order_relaxed);
     const auto step = kept_[i].recovery.update(now, state);
     if (!step.due) continue;
@@ -59,19 +60,22 @@ void CanLinkKeeper::check(MonotonicTime now, std::bitset<kMaxBuses> came_up) {
 }
 
 // Somebody has brought the interface up, or it is a new one: are its settings ours?
-void CanLinkKeeper::checkSettings(std::size_t bus, MonotonicTime now) {
+bool CanLinkKeeper::mendSettings(std::size_t bus, MonotonicTime now) {
   const auto& entry = robot_.buses()[bus];
-  if (std::exchange(kept_[bus].by_us, false)) return;
+  if (std::exchange(kept_[bus].by_us, false)) return false;
   const auto link = driver_.read(entry.interface);
-  if (!link) return;
+  if (!link) return false;
   const auto wrong = wrongSetting(entry.interface, *link, entry.settings);
-  if (wrong.empty()) return;
+  if (wrong.empty()) return false;
   if (!entry.manage_link) {
     notes_.tell(nameOf(bus), Severity::kWarning, settingsAdvice(entry.interface, *link, entry.settings), now);
-  } else if (restart(bus, now)) {
-    notes_.tell(nameOf(bus), Severity::kWarning,
-                fmt::format("{}: {}", wrong, restarted(entry.interface, entry.settings)), now);
+    return false;
   }
+  if (!restart(bus, now)) return false;
+  kept_[bus].recovery.tried(now);
+  notes_.tell(nameOf(bus), Severity::kWarning,
+              fmt::format("{}: {}", wrong, restarted(entry.interface, entry.settings)), now);
+  return true;
 }
 
 void CanLinkKeeper::recover(std::size_t bus, BusState why, MonotonicTime now) {

@@ -44,7 +44,8 @@ class CanLinkKeeper {
   void recover(std::size_t bus, BusState why, MonotonicTime now);
   [[nodiscard]] bool restart(std::size_t bus, MonotonicTime now);
   void advise(std::size_t bus, BusState why, const CanLink& link, MonotonicTime now);
-  void checkSettings(std::size_t bus, MonotonicTime now);
+  /// True: it has restarted the link.
+  [[nodiscard]] bool mendSettings(std::size_t bus, MonotonicTime now);
   [[nodiscard]] std::string_view nameOf(std::size_t bus) const;
 
   Robot& robot_;

@@ -22,10 +22,14 @@ CanLinkRecovery::Step CanLinkRecovery::update(MonotonicTime now, BusState state)
   if (now - since < wait_) return {};
   const Step step{.due = true, .first = !tried_};
   tried_ = true;
+  tried(now);
+  return step;
+}
+
+void CanLinkRecovery::tried(MonotonicTime now) noexcept {
   last_try_ = now;
   wait_ = std::min(wait_ * 2, kLongest);
   ++attempts_;
-  return step;
 }
 
 }  // namespace rc10

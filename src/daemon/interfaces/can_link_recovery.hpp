@@ -25,6 +25,9 @@ class CanLinkRecovery {
   /// new.
   [[nodiscard]] Step update(MonotonicTime now, BusState state) noexcept;
 
+  /// The link was taken down and up for another reason: that is an attempt, too.
+  void tried(MonotonicTime now) noexcept;
+
   /// Attempts since the bus was well.
   [[nodiscard]] int attempts() const noexcept { return attempts_; }
 

@@ -480,7 +480,7 @@ void Axis::forgetReference() noexcept {
 
 void Axis::retune(const CascadeConfig& loops) noexcept {
   motor_.retune(loops);
-  shaper_.setApproach(kApproachOfAngleGain * loops.angle.kp);
+  shaper_.setGains(loops.angle.kp, velocityKp(loops));
 }
 
 void Axis::dropTarget() noexcept {

@@ -41,6 +41,7 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& 
       travel_(settings.travel),
       enabling_(kMitStepPatience, kMitAttempts) {
   const auto id = static_cast<std::uint8_t>(settings.id);
+  if (!v3_) speedFieldEndsAt(own.ranges.velocity_rad_s);
   if (v3_) {
     filters_.fill(FrameFilter{.id = cubemars::servoFeedbackId(settings.id)});
     command_ids_ = {cubemars::servoId(ServoCommand::kMit, settings.id),
@@ -93,7 +94,8 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   watchSpring(*report);
   takePosition(frame.received, unwrapped(report->position_rad, anew) / kRadPerDeg);
   samples_at_end_ = report->at_end ? std::min(samples_at_end_ + 1, kSamplesAtEnd) : 0;
-  if (samples_at_end_ == kSamplesAtEnd) loseReference();
+  feedback_.angle_at_end = samples_at_end_ == kSamplesAtEnd;
+  if (feedback_.angle_at_end) loseReference();
   feedback_.velocity_rpm = static_cast<float>(toOutput(velocity_rad_s_ / kRadPerSPerRpm));
   feedback_.torque_nm = static_cast<float>(torqueToOutput(report->torque_nm));
   feedback_.current_a = feedback_.torque_nm / torqueNmPerA();

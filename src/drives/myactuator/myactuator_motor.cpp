@@ -54,7 +54,9 @@ MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTra
                            .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(id_)}}},
       command_ids_{CanId{myactuator::kRequestBase + static_cast<std::uint32_t>(id_), false},
                    CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}},
-      enabling_(kMyactuatorStepPatience, kMyactuatorStepTries) {}
+      enabling_(kMyactuatorStepPatience, kMyactuatorStepTries) {
+  speedFieldEndsAt(myactuator::kMotionVelocityRadS);
+}
 
 // ---- Feedback
 

@@ -79,6 +79,7 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
                fromDrive(robstride::Type::kFault, codec_.host_id, codec_.drive_id)},
       command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id},
       travel_(settings.travel) {
+  speedFieldEndsAt(model_->velocity_range_rad_s);
   const double square = ratio() * ratio();
   const double torque = model_->torque_range_nm;
   angle_stiffness_ = settings.own.number("angle_stiffness_nm_per_rad") / square;
@@ -188,6 +189,8 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
 }
 
 void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTime received) noexcept {
+  // At its end a scale that does not wrap says no more than that.
+  feedback_.angle_at_end = !wraps() && (seen.raw_position == 0 || seen.raw_position == 0xFFFF);
   if (feedback_.samples == 0) {
     position_rad_ = seen.position_rad;
     return;
@@ -200,9 +203,7 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
                                            static_cast<double>(seconds(longestApart(gap, feedbackPeriod())));
   const bool jumped = std::abs(moved) > reach;
   if (jumped) ++feedback_.jumps;
-  // At its end a scale that does not wrap says no more than that.
-  const bool at_end = !wraps() && (seen.raw_position == 0 || seen.raw_position == 0xFFFF);
-  if (gap > kLongestGap || jumped || at_end) doubtAngles();
+  if (gap > kLongestGap || jumped || feedback_.angle_at_end) doubtAngles();
   position_rad_ += moved;
 }
 

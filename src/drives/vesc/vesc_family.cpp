@@ -200,6 +200,10 @@ class VescFamily final : public MotorFamily {
             Packet::kSetPosition, Packet::kSetCurrentRelative, Packet::kSetCurrentBrakeRelative,
             Packet::kSetHandbrake, Packet::kSetHandbrakeRelative})
         use.steers.push_back({.id = vesc::canId(packet, id)});
+      // A tool at another drive's USB passes its commands on: sender, a flag, then the command.
+      for (const auto command : vesc::kPassedCommands)
+        use.steers.push_back({.id = vesc::canId(Packet::kProcessShortBuffer, id),
+                              .discriminator = PayloadDiscriminator{.byte_index = 2, .value = command}});
     }
 
     const double rate_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 50.0;

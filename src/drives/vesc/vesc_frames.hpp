@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -16,7 +17,7 @@ enum class Packet : std::uint8_t {
   kSetCurrentBrake = 2,
   kSetErpm = 3,
   kSetPosition = 4,
-  kProcessShortBuffer = 8,  ///< A question to the drive, and its answer to the one who asked.
+  kProcessShortBuffer = 8,  ///< A question or command to the drive, and its answer.
   kStatus1 = 9,
   kSetCurrentRelative = 10,
   kSetCurrentBrakeRelative = 11,
@@ -52,6 +53,10 @@ inline constexpr double kPerDegree = 1e6;
 /// A command: always 4 bytes. Firmware >= 6.00 reads a SET_CURRENT of 6 bytes or more as a delay and then the
 /// current, so that 1 A padded with zeros becomes the drive's full current.
 [[nodiscard]] CanFrame makeCommand(Packet packet, int controller_id, std::int32_t raw) noexcept;
+
+/// Commands that one drive passes on to another (COMM_FORWARD_CAN) in a frame kProcessShortBuffer:
+/// COMM_SET_DUTY, SET_CURRENT, SET_CURRENT_BRAKE, SET_RPM, SET_POS, SET_HANDBRAKE, SET_CURRENT_REL.
+inline constexpr std::array<std::uint8_t, 7> kPassedCommands{5, 6, 7, 8, 9, 10, 84};
 
 // Questions that fit into one frame each way: COMM_GET_VALUES_SELECTIVE (50) with one bit
 // of its mask. It moves nothing and feeds no watchdog.

@@ -83,7 +83,7 @@ std::string vescCommand(Packet packet, int id, const CanFrame& frame) {
     case Packet::kSetHandbrakeRelative: return command("handbrake", vesc::kPerShare, "of its most");
     case Packet::kPing: return FrameWords{id, "ping"}.take();
     case Packet::kPong: return FrameWords{id, "pong"}.take();
-    case Packet::kProcessShortBuffer: return FrameWords{id, "question or answer"}.take();
+    case Packet::kProcessShortBuffer: return FrameWords{id, "question, command or answer"}.take();
     case Packet::kNotifyBoot: return FrameWords{id, "has started"}.take();
     default: return {};
   }

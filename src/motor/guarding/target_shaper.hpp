@@ -24,6 +24,7 @@ struct ShapingConfig {
   double angle_max_deg = std::numeric_limits<double>::infinity();
   float approach_rpm_per_deg = 0.0F;     ///< Speed allowed towards a soft limit, per degree before it.
   float approach_effort_per_rpm = 0.0F;  ///< Effort allowed towards it, per rpm below the allowed speed.
+  bool approach_effort_is_gain = false;  ///< It is the proportional gain of the velocity loop on the host.
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
   float effort_per_nm = 0.0F;            ///< A per N·m: of a torque feed-forward. 0: unknown.
   float effort_full_scale = 0.0F;        ///< Effort of a duty of 1. 0: unknown.
@@ -74,8 +75,11 @@ class TargetShaper {
   /// by. Infinite: no bound.
   [[nodiscard]] OutputRange speedBounds(const MotorFeedback& feedback, std::optional<double> from_rpm,
                                         double standstill_rpm) const noexcept;
-  /// After a change of the angle loop's gain: see kApproachOfAngleGain.
-  void setApproach(float rpm_per_deg) noexcept { config_.approach_rpm_per_deg = rpm_per_deg; }
+  /// After a change of the loops' gains: see kApproachOfAngleGain.
+  void setGains(float angle_kp, float velocity_kp) noexcept {
+    config_.approach_rpm_per_deg = kApproachOfAngleGain * angle_kp;
+    if (config_.approach_effort_is_gain) config_.approach_effort_per_rpm = velocity_kp;
+  }
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
   /// targets of a speed or an angle, and by efforts.
   void setCeiling(double rpm) noexcept {

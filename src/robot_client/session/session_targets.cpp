@@ -140,16 +140,17 @@ void SessionTargets::letGo(MonotonicTime now, News& news) {
   auto held = held_.takeAll(now);
   moves_.failAll("the program has let go of the robot", news.moves);
   if (core_.options.at_end == AtEnd::kCoast) {
-    const auto coasts = core_.leaving.coasts(core_.newest.get().get());
-    if (!coasts.empty()) (void)publish(coasts);
+    // One by one, here and below: a message is refused whole for one motor that somebody else has taken.
+    for (const auto& coast : core_.leaving.coasts(core_.newest.get().get())) (void)publish({coast});
     return;
   }
   if (core_.options.at_end == AtEnd::kTimeout) core_.leaving.forget();
   // The same targets, not COAST: rc10d does on_timeout after a target that lapses, nothing after a COAST.
   // Those that are disabled do their on_disable instead.
-  for (auto& message : held) {
-    std::erase_if(message, [this](const auto& order) { return core_.leaving.disables(order.motor); });
-    if (!message.empty()) (void)core_.outgoing.command(message, milliseconds{1});
+  for (const auto& message : held) {
+    for (const auto& order : message) {
+      if (!core_.leaving.disables(order.motor)) (void)core_.outgoing.command({order}, milliseconds{1});
+    }
   }
 }
 

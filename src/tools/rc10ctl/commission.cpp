@@ -137,7 +137,7 @@ class Commissioning {
       return enabled;
     awaitActive();
     client::FirstSpin seen(options_.over_speed_rpm);
-    const auto outcome = drive(rc10d_, order(seen));
+    const auto outcome = drive(rc10d_, order(seen)).status;
     const auto disabled = askOver(*enabling, global_, Operation::kDisable, {options_.motor},
                                   {{.name = link::kAtEnd, .value = 1.0}});
     if (interrupted()) {

@@ -81,9 +81,9 @@ class Driver {
     command_.setpoint_count = 1;
   }
 
-  ExitCode run() {
-    if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
-    if (const auto why = trouble(); !why.empty()) return complain({why}, ExitCode::kFailed);
+  Driven run() {
+    if (const auto there = feed_.awaitState(); !there) return {complain(there.error(), ExitCode::kFailed)};
+    if (const auto why = trouble(); !why.empty()) return {complain({why}, ExitCode::kFailed)};
     const std::string why = repeat();
     // It may have been held up in printing, or stopped and ended by a signal.
     if (!over_ && feed_.pump()) {
@@ -93,11 +93,12 @@ class Driver {
     // Best effort, as the setpoint lapses by itself too.
     if (!over_ && order_.then == Then::kCoast) letGo();
     if (!over_ && order_.then == Then::kTimeout && acts()) lapse();
-    if (!why.empty()) return complain({why}, ExitCode::kFailed);
+    const bool is_ours = ours(why.empty());
+    if (!why.empty()) return {complain({why}, ExitCode::kFailed), is_ours};
     if (order_.then != Then::kDisable)
       std::printf("%s %s\n", name_.c_str(),
                   client::whatActs(motor() != nullptr ? motor()->acting : Acting::kNothing));
-    return ExitCode::kOk;
+    return {ExitCode::kOk, is_ours};
   }
 
  private:
@@ -205,6 +206,12 @@ class Driver {
     return motor() != nullptr ? client::obstacle(*feed_.state(), name_, *motor()) : std::string{};
   }
 
+  // Another rc10ctl has our name.
+  bool ours(bool well) const {
+    if (motor() == nullptr) return false;
+    return motor()->owner.view().empty() ? taken_ || well : inForce();
+  }
+
   // Our target, or the one before it, is that of the motor; another rc10ctl has our name.
   bool inForce() const {
     const auto& now = *motor();
@@ -294,6 +301,6 @@ class Driver {
 
 }  // namespace
 
-ExitCode drive(LinkClient& rc10d, const Drive& order) { return Driver(rc10d, order).run(); }
+Driven drive(LinkClient& rc10d, const Drive& order) { return Driver(rc10d, order).run(); }
 
 }  // namespace rc10::ctl

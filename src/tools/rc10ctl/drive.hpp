@@ -33,8 +33,14 @@ struct Drive {
   std::function<void(const link::Event& event)> hear;
 };
 
+/// The outcome.
+struct Driven {
+  ExitCode status = ExitCode::kFailed;
+  bool ours = false;  ///< The motor obeyed it, and nobody else since.
+};
+
 /// Sends the setpoint again and again for the time, shows what becomes of it, then ends it as `then` says;
 /// so it does after Ctrl-C. Fails if the motor is not ACTIVE, now or later, or somebody else holds it.
-[[nodiscard]] ExitCode drive(LinkClient& rc10d, const Drive& order);
+[[nodiscard]] Driven drive(LinkClient& rc10d, const Drive& order);
 
 }  // namespace rc10::ctl

@@ -61,7 +61,7 @@ ExitCode jog(const Global& global, const JogOptions& options) {
   };
   std::printf("hold right or left: turn at %g rpm; up, down: faster, slower; any other key: stand; q: end\n",
               speed.speed());
-  return drive(*rc10d, order);
+  return drive(*rc10d, order).status;
 }
 
 }  // namespace

@@ -165,11 +165,12 @@ ExitCode set(const Global& global, const SetOptions& options) {
   if (const auto why = whyOutOfRange(global, *order, rc10d->welcome()); !why.empty())
     return complain({why}, ExitCode::kFailed);
   const auto done = drive(*rc10d, *order);
-  if (order->then != Then::kDisable) return done;
+  // A motor that obeys somebody else is not ours to disable.
+  if (order->then != Then::kDisable || !done.ours) return done.status;
   // It comes with our end: what an e-stop holds meanwhile stays held.
   const auto disabled =
       ask(global, Operation::kDisable, {options.motor}, {{.name = link::kAtEnd, .value = 1.0}});
-  return done == ExitCode::kOk ? disabled : done;
+  return done.status == ExitCode::kOk ? disabled : done.status;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace rc10::test::motor_rules_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -197,6 +198,24 @@ TEST(MotorRules, AnAbsoluteEncoderGetsItsTravelAndABoundOfItsFirstStep) {
   EXPECT_TRUE(std::isinf(table.shaping.max_first_step_deg)) << "it turns freely";
   const auto lift = motorOf("{name: a, model: M2006, id: 1, zero: power_on}");
   EXPECT_TRUE(std::isinf(lift.shaping.max_first_step_deg));
+}
+
+TEST(MotorRules, WhereNothingSlowsAMotorDownItsSpeedHasNoBound) {
+  const std::string group = "model: LK-MF9025, id: 1, group: true";
+  for (const std::string key : {"angle_min_deg: -90", "angle_max_deg: 90"}) {
+    EXPECT_THAT(
+        errorsOf(robotWith("{name: a, " + group + ", " + key + "}")),
+        ElementsAre(AllOf(HasSubstr("hero.yaml:6:"), HasSubstr("nothing could slow the motor down there"),
+                          HasSubstr("use group: false"))));
+    for (const std::string good :
+         {"LK-MF9025, id: 1", "LK-MF9025, id: 1, group: true, velocity_limit_rpm: 100",
+          "DM6248P, id: 1, master_id: 17, control: position_velocity"}) {
+      EXPECT_THAT(errorsOf(robotWith("{name: a, model: " + good + ", " + key + "}")), IsEmpty()) << good;
+    }
+  }
+  const std::string input = "mode_gpio: {chip: gpiochip0, line: 23}\n";
+  EXPECT_THAT(errorsOf(input + robotWith("{name: a, " + group + ", reduced_velocity_rpm: 30}")),
+              Contains(HasSubstr("reduced_velocity_rpm: nothing could slow the motor down there")));
 }
 
 TEST(MotorRules, ASlewOfTheSpeedEndsAtTheLimitOrWellBeyondTheNoLoadSpeed) {

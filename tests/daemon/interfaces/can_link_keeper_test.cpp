@@ -183,6 +183,30 @@ TEST_F(CanLinkKeeperTest, ABusThatComesUpWithAnotherBitRateIsToldOrMended) {
                                                    HasSubstr("taken down and up at 1000000 bit/s"))));
 }
 
+TEST_F(CanLinkKeeperTest, ARestartForTheSettingsIsNotRepeatedBecauseItTookTheLinkDown) {
+  manage();
+  fakeLink().link.bitrate = 500'000;
+  inboxes[0].state = BusState::kDown;  // somebody took it down and up, to change its settings
+  comesUp();
+  EXPECT_EQ(fakeLink().restarts, 1);
+  fakeLink().link.bitrate = 1'000'000;
+  now += 50ms;
+  run(BusState::kDown, 50ms);  // the scheduler has not seen it up yet
+  run(BusState::kActive, 10s);
+  EXPECT_EQ(fakeLink().restarts, 1);
+  EXPECT_THAT(told(), ::testing::ElementsAre(HasSubstr("can7 is set to 500000 bit/s")));
+}
+
+TEST_F(CanLinkKeeperTest, ALinkThatStaysDownAfterARestartForItsSettingsIsRestartedAgain) {
+  manage();
+  fakeLink().link.bitrate = 500'000;
+  inboxes[0].state = BusState::kDown;
+  comesUp();
+  now += 50ms;
+  run(BusState::kDown, 200ms);
+  EXPECT_EQ(fakeLink().restarts, 2);
+}
+
 TEST_F(CanLinkKeeperTest, AnFdBusThatComesUpClassicOrWithAnotherDataRateIsToldOrMended) {
   robot->buses()[0].settings.data_bitrate = 5'000'000;
   comesUp();

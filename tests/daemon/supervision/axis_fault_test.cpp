@@ -272,6 +272,25 @@ TEST_F(FaultTest, SoftLimitsHoldUnderEveryMode) {
   }
 }
 
+TEST_F(FaultTest, ASoftLimitHoldsACurrentWithGainsThatWereSetLive) {
+  auto config = robotWith({});
+  auto& shaping = config.buses[0].motors[kLeft].shaping;
+  shaping.angle_min_deg = -180.0;
+  shaping.angle_max_deg = 180.0;
+  shaping.approach_rpm_per_deg = 2.0F;
+  shaping.approach_effort_per_rpm = 0.02F;
+  shaping.approach_effort_is_gain = true;
+  start(config);
+  Order gains;
+  gains.operation = Operation::kSetGains;
+  gains.motors.set(kLeft);
+  gains.gains.count = 1;
+  gains.gains.values[0] = {LoopGain::kVelocityKp, 0.2F};
+  ASSERT_EQ(robot->carryOut(gains).motors[kLeft], Refusal::kNone);
+  robot->hold(kLeft, {.mode = ControlMode::kCurrent, .value = 5.0}, 3000);
+  EXPECT_NEAR(robot->motor(kLeft).feedback.total_angle_deg, 180.0, 5.0);
+}
+
 TEST_F(FaultTest, ASoftLimitHoldsInTheTickInWhichAnAbsoluteAngleIsKnownAgain) {
   constexpr std::size_t kYaw = 2;
   auto config = robotWith({});

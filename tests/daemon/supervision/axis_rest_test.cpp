@@ -283,6 +283,30 @@ TEST_P(RestTest, RestFramesOfOthersAndQuestionsAreNone) {
 INSTANTIATE_TEST_SUITE_P(All, RestTest, ::testing::ValuesIn(kSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });
 
+class ShortBufferTest : public RestTest {};
+
+// A vendor's tool at the USB of another VESC: COMM_FORWARD_CAN, and a command of five bytes.
+TEST_P(ShortBufferTest, ACommandThatAnotherDrivePassesOnIsSomebodyElses) {
+  ASSERT_TRUE(enable());
+  for (const char* question : {"0000080A#640004", "0000080A#64003200008000"}) {
+    for (int i = 0; i < 10; ++i) {
+      foreign(frameOf(question));
+      robot.hold(kMotor, turning(), 2);
+    }
+    EXPECT_EQ(status(), MotorStatus::kActive) << question;
+  }
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(status(), MotorStatus::kActive);
+    const std::array frames{"0000080A#640008000003E8", "000008FF#640006000003E8", "0000080A#640054000003E8"};
+    foreign(frameOf(frames[static_cast<std::size_t>(i)]));
+    robot.hold(kMotor, turning(), 2);
+  }
+  EXPECT_EQ(fault(), FaultCode::kForeignCommands);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vesc, ShortBufferTest, ::testing::Values(kSubjects[4]),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
+
 // ---- The robot
 
 constexpr std::string_view kRobot = R"(

@@ -57,6 +57,8 @@ def run(block: Block, daemon: Daemon, folder: Path) -> str:
     """Runs Python or shell in the folder, which must succeed; what it printed."""
     if not (folder / "python").exists():
         os.symlink(REPO / "python", folder / "python")
+    if not (folder / ".venv").exists():
+        os.symlink(sys.prefix, folder / ".venv")
     python = os.path.dirname(sys.executable)
     env = {**os.environ, **daemon.env, "PATH": f"{python}:{BIN}:{os.environ['PATH']}"}
     command = [sys.executable, "-c"] if block.kind == "python" else ["bash", "-ec"]

@@ -156,7 +156,7 @@ class Proc:
                     for pattern in patterns:
                         if pattern not in found and (match := re.search(pattern, line)):
                             found[pattern] = match
-                    if len(found) == len(patterns):
+                    if len(found) == len(set(patterns)):
                         return [found[pattern] for pattern in patterns]
                 if self._ended or not self._news.wait(deadline - time.monotonic()):
                     break
