@@ -18,8 +18,9 @@ struct CascadeConfig {
 };
 
 [[nodiscard]] inline float velocityKp(const CascadeConfig& loops) noexcept {
-  const auto* incremental = std::get_if<PID_Incremental::Config>(&loops.velocity);
-  return incremental != nullptr ? incremental->kp : std::get_if<PID_Position::Config>(&loops.velocity)->kp;
+  if (const auto* incremental = std::get_if<PID_Incremental::Config>(&loops.velocity)) return incremental->kp;
+  const auto* position = std::get_if<PID_Position::Config>(&loops.velocity);
+  return position != nullptr ? position->kp : 0.0F;
 }
 
 /// Angle -> velocity -> effort, shared by all motors whose loops run on the host.
