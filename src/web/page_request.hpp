@@ -37,8 +37,8 @@ struct AskRange {
 /// An operation of rc10d, as rc10ctl's verbs send it.
 struct AskRobot {
   std::int64_t seq = 0;
-  std::optional<Duration> sent =
-      std::nullopt;  ///< By the page's clock. Empty: one that stops, which never is too late.
+  /// By the page's clock. Empty: one that stops, which is never too late.
+  std::optional<Duration> sent = std::nullopt;
   std::string operation;
   std::string target;
   std::vector<std::pair<std::string, double>> values;

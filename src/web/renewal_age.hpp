@@ -9,7 +9,8 @@
 namespace rc10::web {
 
 /// Delay of a page's messages on their way, by the page's own clock: how much later than the quickest one
-/// each arrives. A message that was held up (a busy browser, a lost packet, a paused server) renews nothing.
+/// each arrives. A message that was held up (a busy browser, a lost packet, a paused server) renews
+/// nothing, and asks for nothing but a stop.
 class RenewalAge {
  public:
   /// `sent`: by the page's clock, whose zero is not known here.

@@ -253,7 +253,7 @@ def test_the_end_of_a_target_can_be_chosen(lift: Daemon) -> None:
     assert ready["stopped_by"] == "rc10ctl"
 
 
-def test_a_motor_that_obeys_somebody_else_is_not_disabled_at_the_end(daemon: Daemon) -> None:
+def test_a_motor_that_obeys_somebody_else_stays_enabled_at_the_end(daemon: Daemon) -> None:
     daemon.must("enable", "wheel")
     with rc10.connect("host", client="tester", priority=5) as robot:
         robot.wait_for_state()

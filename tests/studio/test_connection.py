@@ -81,6 +81,18 @@ def test_a_server_that_falls_silent_is_left_for_one_new_connection(lonely: Page)
     assert lonely.evaluate("sockets.filter((socket) => socket.readyState === 3).length") >= 1
 
 
+def test_a_computer_that_slept_gets_a_new_connection(lonely: Page) -> None:
+    """Its messages would seem to be late by as long as it slept."""
+    lonely.evaluate("serverIsThere = true")
+    lonely.clock.run_for(6_000)
+    assert open_sockets(lonely) == 1
+    before: int = lonely.evaluate("sockets.length")
+    lonely.evaluate("{ const now = Date.now; Date.now = () => now() + 60_000; }")
+    lonely.clock.run_for(6_000)
+    assert open_sockets(lonely) == 1
+    assert lonely.evaluate("sockets.length") == before + 1
+
+
 def test_each_view_of_a_page_has_a_number_of_its_own(page: Page) -> None:
     views: list[int] = []
 

@@ -33,16 +33,13 @@ void warnOfTurn(MotorParse& in) {
 
 }  // namespace
 
-bool slowsDown(const ShapingConfig& shaping) noexcept {
-  return shaping.has_velocity_loop || shaping.approach_effort_per_rpm > 0.0F || shaping.effort_per_rpm > 0.0F;
-}
-
 void refuseWithoutBrake(MotorParse& in, std::string_view key) {
   const auto given = in.settings.find(key);
   const auto& modes = in.traits.modes;
   const bool pushes = modes.contains(ControlMode::kCurrent) || modes.contains(ControlMode::kVoltage) ||
                       modes.contains(ControlMode::kDuty);
-  if (!given || !pushes || slowsDown(in.draft.config.shaping)) return;
+  const ShapingConfig& shaping = in.draft.config.shaping;
+  if (!given || !pushes || shaping.has_velocity_loop || shaping.knowsBrakingEffort()) return;
   const std::string remedy = in.settings.mentions("group") ? ", or use group: false" : "";
   in.problems.error(
       given->place(), given->path,

@@ -9,11 +9,8 @@ namespace rc10 {
 /// Slew and soft limits, and how a target approaches them.
 void readShaping(MotorParse& in);
 
-/// Whether something slows a shaft down that a current has made too fast: a gain, a known speed per effort,
-/// or the drive's velocity loop. Known after readShaping.
-[[nodiscard]] bool slowsDown(const ShapingConfig& shaping) noexcept;
-
-/// Refuses a key that binds the speed of a motor which nothing slows down.
+/// Refuses a key that bounds the speed where nothing slows down a shaft which a current has made too fast:
+/// neither a known effort nor a velocity loop. After readShaping has read both.
 void refuseWithoutBrake(MotorParse& in, std::string_view key);
 
 }  // namespace rc10

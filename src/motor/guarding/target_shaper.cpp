@@ -350,8 +350,8 @@ std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feed
   std::uint32_t limits = slewTowards(goal, per_s, dt_s, value_) ? kLimitSlew : 0U;
   asked.value = value_;
   if (!bounded(feedback) && !reduced()) return limits;
-  const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
-  if (!known && config_.has_velocity_loop) return limits | boundBySpeed(asked, feedback);
+  if (!config_.knowsBrakingEffort() && config_.has_velocity_loop)
+    return limits | boundBySpeed(asked, feedback);
   // A push outwards fades as the speed nears what is allowed, and brakes beyond it. A push inwards always
   // acts.
   const Envelope allowed = allowedSpeeds(feedback);
@@ -392,8 +392,7 @@ std::uint32_t TargetShaper::boundBySpeed(Target& asked, const MotorFeedback& fee
 // no farther. Back it always acts.
 double TargetShaper::effortTowards(double allowed_rpm, double sign,
                                    const MotorFeedback& feedback) const noexcept {
-  const bool known = config_.approach_effort_per_rpm > 0.0F || config_.effort_per_rpm > 0.0F;
-  if (known) return effortFor(allowed_rpm, feedback);
+  if (config_.knowsBrakingEffort()) return effortFor(allowed_rpm, feedback);
   const bool slower = sign * (allowed_rpm - static_cast<double>(feedback.velocity_rpm)) > 0.0;
   return slower && sign * allowed_rpm > 0.0 ? sign * std::numeric_limits<double>::infinity() : 0.0;
 }

@@ -36,6 +36,11 @@ struct ShapingConfig {
   bool springs = false;                  ///< The drive makes torque by a SpringLaw, without an integral.
   double max_first_step_deg = std::numeric_limits<double>::infinity();
   float soft_start_s = 0.0F;  ///< The first target after enabling comes into force over this time.
+
+  /// An effort is known that brakes a shaft which is too fast.
+  [[nodiscard]] bool knowsBrakingEffort() const noexcept {
+    return approach_effort_per_rpm > 0.0F || effort_per_rpm > 0.0F;
+  }
 };
 
 /// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle

@@ -249,14 +249,20 @@ TEST_F(FaultTest, AFollowingErrorStopsAMotorThatDoesNotKeepUp) {
   EXPECT_EQ(robot->motor(kLeft).fault, FaultCode::kFollowingError);
 }
 
-TEST_F(FaultTest, SoftLimitsHoldUnderEveryMode) {
+/// Half a turn to each side for `left`.
+RobotConfig robotWithinHalfATurn(float approach_effort_per_rpm) {
   auto config = robotWith({});
   auto& shaping = config.buses[0].motors[kLeft].shaping;
   shaping.angle_min_deg = -180.0;
   shaping.angle_max_deg = 180.0;
   shaping.approach_rpm_per_deg = 2.0F;
-  shaping.approach_effort_per_rpm = 0.2F;
-  shaping.effort_per_nm = 1.0F / 0.3F;
+  shaping.approach_effort_per_rpm = approach_effort_per_rpm;
+  return config;
+}
+
+TEST_F(FaultTest, SoftLimitsHoldUnderEveryMode) {
+  auto config = robotWithinHalfATurn(0.2F);
+  config.buses[0].motors[kLeft].shaping.effort_per_nm = 1.0F / 0.3F;
   for (const Target target :
        {Target{.mode = ControlMode::kVelocity, .value = 480.0},
         Target{.mode = ControlMode::kCurrent, .value = 5.0},
@@ -273,13 +279,8 @@ TEST_F(FaultTest, SoftLimitsHoldUnderEveryMode) {
 }
 
 TEST_F(FaultTest, ASoftLimitHoldsACurrentWithGainsThatWereSetLive) {
-  auto config = robotWith({});
-  auto& shaping = config.buses[0].motors[kLeft].shaping;
-  shaping.angle_min_deg = -180.0;
-  shaping.angle_max_deg = 180.0;
-  shaping.approach_rpm_per_deg = 2.0F;
-  shaping.approach_effort_per_rpm = 0.02F;
-  shaping.approach_effort_is_gain = true;
+  auto config = robotWithinHalfATurn(0.02F);
+  config.buses[0].motors[kLeft].shaping.approach_effort_is_gain = true;
   start(config);
   Order gains;
   gains.operation = Operation::kSetGains;
