@@ -132,6 +132,31 @@ def test_the_times_are_those_of_rc10d_and_motors_have_their_topics(
     assert len(times_us) > (times_us[-1] - times_us[0]) / 1000 * 2 / 3
 
 
+def test_ticks_whose_answer_is_left_out_are_asked_for_again(page: Page) -> None:
+    left_out: list[str | bytes] = []
+
+    def relay(socket: WebSocketRoute) -> None:
+        server = socket.connect_to_server()
+
+        def handle(message: str | bytes) -> None:
+            told = json.loads(message)
+            # A picture asks for wider columns.
+            if told["type"] == "range" and told["column_us"] == 1000 and not left_out:
+                left_out.append(message)
+            else:
+                server.send(message)
+
+        socket.on_message(handle)
+
+    page.route_web_socket("**/link", relay)
+    page.reload()
+    page.locator("#tab-plots").click()
+    expect(page.locator(".plot > .legend td.number").last).not_to_contain_text("\N{EN DASH}")
+    mcap = Mcap.saved(page, page.get_by_role("button", name="MCAP", exact=True))
+    assert len(left_out) == 1
+    assert mcap.messages[TOPIC]
+
+
 def test_ticks_that_the_server_does_not_have_any_more_are_said_to_be_missing(page: Page) -> None:
     answer_the_past(page, lambda _place, _time_s: math.nan)
     page.get_by_role("button", name="MCAP", exact=True).click()
