@@ -206,7 +206,10 @@ class Remote : public Module_Base {
     }
     // A remote that was never heard is not lost.
     if (was_heard_ < 0) return;
-    if (was_heard_ == 1) robot.report(kLost);
+    if (was_heard_ == 1) {
+      robot.report(kLost);
+      last_up_ = switch_up_ = std::nullopt;
+    }
     was_heard_ = 0;
     if (told_to_disable_ || tick.now - lost_since_ < disable_) return;
     told_to_disable_ = true;
@@ -233,7 +236,10 @@ class Remote : public Module_Base {
     if (received == judged_) return switch_up_;
     judged_ = received;
     const bool up = values_[channel] > arm_above_;
-    if (last_up_ == up) switch_up_ = up;
+    if (last_up_ == up) {
+      switch_up_ = up;
+      switch_ = values_[channel];
+    }
     last_up_ = up;
     return switch_up_;
   }
@@ -285,6 +291,8 @@ class Remote : public Module_Base {
     setAge(kAgeMs, age);
     for (std::size_t i = 0; i < values_.size(); ++i)
       setOutput(kFirstChannel + i, heard ? values_[i] : kNoSignal);
+    // Only what counts is shown: who has seen it down may move it up.
+    if (arm_channel_ && heard) setOutput(kFirstChannel + *arm_channel_, switch_up_ ? switch_ : kNoSignal);
   }
 
   std::string path_;
@@ -301,7 +309,8 @@ class Remote : public Module_Base {
 
   std::optional<bool> last_up_;    ///< The switch in the last frame.
   std::optional<bool> switch_up_;  ///< The switch as two frames in a row had it.
-  MonotonicTime judged_{};         ///< When that frame came.
+  double switch_ = kNoSignal;      ///< Its channel when they had it.
+  MonotonicTime judged_{};         ///< When the last frame came.
 
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;

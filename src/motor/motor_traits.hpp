@@ -22,6 +22,8 @@ struct MotorTraits {
   float phase_resistance_ohm = 0.0F;  ///< 0: unknown.
   bool absolute = false;              ///< Knows the angle of its output at power-up.
   bool reports_temperature = true;
+  bool reports_angle = true;
+  bool bounds_effort = true;  ///< It can be told a limit of its effort.
   bool scaled_speed = false;  ///< Its speed is a share of a range that depends on the model.
   float frozen_a = 0.0F;      ///< Full scale of the current that it reports; 0: it reports none.
   float signed_a = 0.0F;      ///< Full scale of a current with the sign of the torque; 0: it reports none.

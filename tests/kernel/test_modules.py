@@ -382,7 +382,6 @@ def use_the_arm_switch(hero: Hero) -> None:
         lambda: (remote.state["connected"], remote.state["left_switch"]) == (1.0, -1.0),
         "a remote with the switch down",
     )
-    let_pass(hero.robot, 0.05)  # two frames
     hero.remote.left_switch = 1
     wait_status(hero.robot, rc10.MotorStatus.ACTIVE)
 

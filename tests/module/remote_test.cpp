@@ -83,6 +83,11 @@ class Remote : public ::testing::Test {
     armSwitch(Dr16Input::Switch::kUp);
   }
   double armed() { return module_->outputs()[1]; }
+  double shown(std::string_view output) {
+    const auto& names = module_->signals().outputs;
+    const auto place = std::find(names.begin(), names.end(), output) - names.begin();
+    return module_->outputs()[static_cast<std::size_t>(place)];
+  }
   bool asks(RobotRequest request) {
     return std::any_of(asked_.begin(), asked_.end(),
                        [&](const auto& asked) { return asked.request == request; });
@@ -104,6 +109,28 @@ TEST_F(Remote, ASwitchThatIsUpAtTheStartEnablesNothing) {
   EXPECT_THAT(asked_, IsEmpty());
   EXPECT_EQ(armed(), 0.0);
   EXPECT_THAT(robot_.sent(), IsEmpty());
+}
+
+TEST_F(Remote, ASwitchIsShownDownOnceItCountsAsDown) {
+  build();
+  dbus_.left_switch = Dr16Input::Switch::kDown;
+  while (shown("left_switch") != -1.0) run(1);
+  dbus_.left_switch = Dr16Input::Switch::kUp;
+  run(60);
+  EXPECT_EQ(armed(), 1.0);
+  EXPECT_EQ(shown("left_switch"), 1.0);
+}
+
+TEST_F(Remote, TheSwitchOfARemoteThatIsBackCountsFromItsSecondFrame) {
+  build();
+  arm();
+  run(500, false);
+  run(14);
+  EXPECT_EQ(shown("connected"), 1.0);
+  EXPECT_TRUE(std::isnan(shown("left_switch")));
+  EXPECT_EQ(armed(), 1.0) << "a short loss";
+  run(14);
+  EXPECT_EQ(shown("left_switch"), 1.0);
 }
 
 TEST_F(Remote, TheSwitchGoingUpEnablesWhatIsReadyAndDownDisablesWhatIsOn) {

@@ -48,6 +48,7 @@ enum Need : std::uint16_t {
   kNeedsOwnFrames = 1U << 8U,      ///< It shares its command frames with no other.
   kNeedsSignedCurrent = 1U << 9U,  ///< It reports a current with the sign of its torque.
   kNeedsScaledSpeed = 1U << 10U,   ///< It reports its speed as a share of a range.
+  kNeedsAngle = 1U << 11U,         ///< It reports an angle, or what one follows from.
 };
 
 struct Section;

@@ -247,12 +247,14 @@ constexpr std::array kMotorKeys{
         .kind = kNumber,
         .unit = "deg/s",
         .range = kSlew,
+        .needs = kNeedsAngle,
         .about = "How fast an angle target may move; the angle loop's velocity limit holds anyway. Default: "
                  "at once."},
     Key{.name = "angle_min_deg",
         .kind = kNumber,
         .unit = "deg",
         .range = kSoftLimit,
+        .needs = kNeedsAngle,
         .about =
             "Soft limit of the multi-turn angle, in force while the angle is referenced. No target "
             "leads beyond it; moving back is allowed. With both limits set they tell an absolute encoder "
@@ -261,11 +263,13 @@ constexpr std::array kMotorKeys{
         .kind = kNumber,
         .unit = "deg",
         .range = kSoftLimit,
+        .needs = kNeedsAngle,
         .about = "The other soft limit. Default: none."},
     Key{.name = "max_first_step_deg",
         .kind = kNumber,
         .unit = "deg",
         .range = {.min = 0, .max = 1'000'000, .above_min = true},
+        .needs = kNeedsAngle,
         .about = "An angle target that follows none is refused if it is farther than this from the measured "
                  "angle. Default: 180 for an absolute encoder with a soft limit and without "
                  "angle_slew_deg_per_s, else any distance."},
@@ -281,6 +285,7 @@ constexpr std::array kMotorKeys{
         .kind = kNumber,
         .unit = "deg",
         .range = {.min = 0, .max = 1'000'000, .above_min = true},
+        .needs = kNeedsAngle,
         .about = "This distance from the angle target, for following_error_ms, is a fault. Needs "
                  "angle_slew_deg_per_s. Default: not watched."},
     Key{.name = "following_error_ms",

@@ -22,6 +22,8 @@ std::string whyMeaningless(const Key& key, std::uint16_t unmet, const MotorNatur
     return "the " + model + ", as it is configured, reports no current with a sign; remove it";
   if ((unmet & kNeedsScaledSpeed) != 0)
     return "the " + model + " does not report its speed as a share of a range; remove it";
+  if ((unmet & kNeedsAngle) != 0)
+    return "the " + model + ", as it is configured, reports no angle; remove it, or write angle";
   const std::string geared = nature.traits.absolute ? " behind a gear" : "";
   return "the " + model + geared + " does not know its output angle at power-up" + use_twin;
 }
@@ -32,6 +34,7 @@ std::uint16_t MotorNature::metNeeds() const noexcept {
   if (traits.reports_temperature) met |= kNeedsTemperature;
   if (traits.signed_a > 0.0F) met |= kNeedsSignedCurrent;
   if (traits.scaled_speed) met |= kNeedsScaledSpeed;
+  if (traits.reports_angle) met |= kNeedsAngle;
   if (absolute) met |= kNeedsAbsolute;
   if (traits.host_loops != nullptr) met |= kNeedsHostLoops;
   if (!traits.asked) met |= kNeedsUnasked;

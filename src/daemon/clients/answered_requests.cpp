@@ -5,7 +5,9 @@
 namespace rc10 {
 namespace {
 
-constexpr std::size_t kMaxRemembered = 64;
+// Of one program, which must not push out the answers of others; and of all.
+constexpr std::ptrdiff_t kMaxOfOne = 64;
+constexpr std::size_t kMaxRemembered = 1024;
 
 template <typename Other>
 [[nodiscard]] bool sameNumber(const link::Request& request, const Other& other) noexcept {
@@ -22,6 +24,11 @@ bool repeats(const link::Request& request, const link::Request& earlier) noexcep
 void AnsweredRequests::remember(std::uint64_t asker, const link::Request& request,
                                 const link::Response& response) {
   answered_.push_back({asker, request.operation, response});
+  const auto same = [&](const Answered& each) {
+    return each.asker == asker && each.response.client.view() == response.client.view();
+  };
+  if (std::count_if(answered_.begin(), answered_.end(), same) > kMaxOfOne)
+    answered_.erase(std::find_if(answered_.begin(), answered_.end(), same));
   if (answered_.size() > kMaxRemembered) answered_.pop_front();
 }
 

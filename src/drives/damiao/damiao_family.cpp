@@ -139,6 +139,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.frozen_a = static_cast<float>(model.scale.t_max_nm) / model.torque_nm_per_a;
   traits.signed_a = traits.frozen_a;
   traits.scaled_speed = true;
+  traits.bounds_effort = control == DamiaoControl::kMit || control == DamiaoControl::kForcePosition;
   traits.asked = true;
   traits.fd = can_fd;
   traits.data_bitrate = can_fd ? 5'000'000 : 0;

@@ -259,6 +259,7 @@ MotorTraits vescTraits(const VescSettings& own) {
   traits.signed_a = own.motor_current_max_a;
   traits.asked = false;
   traits.watchdog = own.ask_status;
+  traits.reports_angle = own.angle != VescAngle::kNone;
   traits.modes = own.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
   if (!(own.brake_current_a > 0.0F)) traits.modes = traits.modes.without(ControlMode::kBrake);
   static constexpr DriveSetup kSetup{.tool = "VESC Tool (the simple CAN commands write no settings)"};

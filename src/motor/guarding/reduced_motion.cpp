@@ -34,9 +34,12 @@ void ReducedMotion::begin(float speed_rpm, MonotonicTime now) noexcept {
   ceiling_rpm_ = speed_rpm > config_.velocity_rpm ? static_cast<double>(speed_rpm) : least;
   comes_down_ = speed_rpm > config_.velocity_rpm + config_.tolerance_rpm;
   if (comes_down_) share_ = 1.0F;  // also where it was reduced while the shaft stood
-  fall_rpm_per_s_ = config_.slew_rpm_per_s > 0.0F
-                        ? static_cast<double>(config_.slew_rpm_per_s)
-                        : (ceiling_rpm_ - least) / static_cast<double>(seconds(config_.within / 2));
+  const auto slew_rpm_per_s = static_cast<double>(config_.slew_rpm_per_s);
+  const double evenly_rpm_per_s = (ceiling_rpm_ - least) / static_cast<double>(seconds(config_.within / 2));
+  // The slew is known to be quick enough from the highest speed that a target has; a load may be faster.
+  const bool beyond = speed_rpm > config_.full_rpm;
+  const bool by_slew = slew_rpm_per_s > 0.0 && !beyond;
+  fall_rpm_per_s_ = by_slew ? slew_rpm_per_s : std::max(slew_rpm_per_s, evenly_rpm_per_s);
 }
 
 // The effort that brings the shaft down is full until it is slow, or should be.

@@ -46,6 +46,19 @@ TEST(MotorRules, ANameIsOneToThirtyOnePlainCharacters) {
   EXPECT_THAT(errorsOfMotor("{name: 3, model: M3508, id: 1}"), IsEmpty());
 }
 
+TEST(MotorRules, AKeyOfTheAngleNeedsADriveThatReportsOne) {
+  const std::string vesc = "{name: a, model: VESC, id: 1, pole_pairs: 7, motor_current_max_a: 40, angle: ";
+  for (const std::string key :
+       {"angle_min_deg: 0", "angle_max_deg: 90", "angle_slew_deg_per_s: 90", "max_first_step_deg: 20"}) {
+    EXPECT_THAT(errorsOfMotor(vesc + "none, " + key + "}"),
+                ElementsAre(HasSubstr(key.substr(0, key.find(':')) +
+                                      ": the VESC, as it is configured, reports no angle; remove it")));
+    EXPECT_THAT(errorsOfMotor(vesc + "tachometer, " + key + "}"), IsEmpty()) << key;
+  }
+  EXPECT_THAT(errorsOfMotor(vesc + "none, following_error_deg: 5}"),
+              Contains(HasSubstr("following_error_deg: the VESC, as it is configured, reports no angle")));
+}
+
 TEST(MotorRules, AnUnknownModelListsTheKnownOnes) {
   EXPECT_THAT(
       errorsOfMotor("{name: a, model: Stepper, id: 1}"),

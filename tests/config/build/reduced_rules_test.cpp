@@ -84,6 +84,20 @@ TEST(ReducedRules, AReducedLimitIsBelowTheOther) {
       ElementsAre(HasSubstr("reduced_current_a: 4 A is not below the 4 A that the motor may have anyway")));
 }
 
+TEST(ReducedRules, ACurrentIsReducedWhereTheDriveObeysALimit) {
+  const std::string damiao = "DM4340, id: 1, master_id: 17, control: ";
+  for (const std::string control : {"velocity", "position_velocity"}) {
+    EXPECT_THAT(
+        errorsOf(robotText(kInput, "reduced_velocity_rpm: 9, reduced_current_a: 2", damiao + control)),
+        ElementsAre(
+            HasSubstr("reduced_current_a: its drive obeys no limit of its current in control " + control)));
+    EXPECT_THAT(errorsOf(robotText(kInput, "reduced_velocity_rpm: 9", damiao + control)), IsEmpty());
+  }
+  for (const std::string control : {"mit", "force_position"}) {
+    EXPECT_THAT(errorsOf(robotText(kInput, "reduced_current_a: 2", damiao + control)), IsEmpty());
+  }
+}
+
 TEST(ReducedRules, TheRampFitsIntoTheTime) {
   const std::string slow = "velocity_limit_rpm: 400, reduced_velocity_rpm: 100, velocity_slew_rpm_per_s: 200";
   EXPECT_THAT(

@@ -356,10 +356,21 @@ TEST_F(RequestDeskTest, AnotherClientSessionOrNumberIsAnotherRequest) {
   EXPECT_TRUE(begin(request).order);
 }
 
-TEST_F(RequestDeskTest, ARefusalIsRememberedToo) {
-  (void)refusal(linkRequest(1, "enable", "nobody"));
-  // The same number with another content is a repetition, not a new request.
-  EXPECT_THAT(refusal(linkRequest(1, "enable", "left")), HasSubstr("'nobody'"));
+TEST_F(RequestDeskTest, ARefusalIsGivenAnew) {
+  EXPECT_THAT(refusal(linkRequest(1, "enable", "nobody")), HasSubstr("'nobody'"));
+  EXPECT_THAT(refusal(linkRequest(1, "enable", "nobody")), HasSubstr("'nobody'"));
+}
+
+TEST_F(RequestDeskTest, NoOtherProgramPushesAnAnswerOut) {
+  const auto asked = linkRequest(1, "disable", "left");
+  (void)desk.finish(done(*begin(asked).order));
+  for (std::int64_t seq = 1; seq <= 200; ++seq) {
+    auto other = linkRequest(seq, seq % 2 == 0 ? "dance" : "enable");
+    other.client = "observer";
+    const auto outcome = begin(other);
+    if (outcome.order) (void)desk.finish(done(*outcome.order));
+  }
+  EXPECT_EQ(begin(asked).order->asked, Asked::kAgain) << "no second disable, which lets go of a load";
 }
 
 TEST_F(RequestDeskTest, WhatCouldNotBeHandedOverMaySucceedWhenRepeated) {

@@ -76,6 +76,18 @@ TEST_F(ReducedMotionTest, TheCeilingFallsAtTheRateOfTheMotorWhereItHasOne) {
   EXPECT_NEAR(motion.ceilingRpm(), 179.9, 1e-4);
 }
 
+TEST_F(ReducedMotionTest, AShaftThatWasSpunUpBeyondItsLimitComesDownInTimeAllTheSame) {
+  auto slow = config();
+  slow.slew_rpm_per_s = 460.0F;
+  motion = ReducedMotion{slow};
+  step(true, true, -1020.0F);
+  EXPECT_NEAR(motion.ceilingRpm(), 1020.0 - 2.0, 1e-3);
+  slow.slew_rpm_per_s = 4000.0F;
+  motion = ReducedMotion{slow};
+  step(true, true, -1020.0F);
+  EXPECT_NEAR(motion.ceilingRpm(), 1020.0 - 4.0, 1e-3) << "its own rate is quicker";
+}
+
 TEST_F(ReducedMotionTest, AShaftThatIsSlowHasTheReducedSpeedAtOnce) {
   for (const float rpm : {0.0F, 12.0F, 20.0F}) {
     motion = ReducedMotion{config()};
