@@ -5,7 +5,7 @@
 namespace rc10 {
 namespace {
 
-// Of one program, which must not push out the answers of others; and of all.
+// A program must not push out the answers of others.
 constexpr std::ptrdiff_t kMaxOfOne = 64;
 constexpr std::size_t kMaxRemembered = 1024;
 
