@@ -22,4 +22,8 @@ struct Tick {
   return static_cast<float>(std::chrono::duration<double>(duration).count());
 }
 
+[[nodiscard]] constexpr Duration periodOf(int hz) noexcept {
+  return Duration{std::chrono::seconds{1}} / (hz > 1 ? hz : 1);
+}
+
 }  // namespace rc10

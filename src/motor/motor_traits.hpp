@@ -31,12 +31,13 @@ struct MotorTraits {
   int feedback_hz = 1000;     ///< Default.
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
-  bool asked = false;        ///< Sends only answers: its feedback comes at the command rate.
-  int samples_every = 1;     ///< Turns of an asked drive for each sample of its angle.
-  bool fd = false;           ///< Speaks CAN FD.
-  int data_bitrate = 0;      ///< Data phase of its CAN FD, as delivered; 0: unknown.
-  bool classic_only = true;  ///< Answers FD frames with error frames.
-  bool watchdog = false;     ///< The drive's own: stops it without commands; set or verified by enabling.
+  bool asked = false;          ///< Sends only answers: its feedback comes at the command rate.
+  Duration restart_silence{};  ///< An asked drive that is silent for longer has restarted; 0: not judged.
+  int samples_every = 1;       ///< Turns of an asked drive for each sample of its angle.
+  bool fd = false;             ///< Speaks CAN FD.
+  int data_bitrate = 0;        ///< Data phase of its CAN FD, as delivered; 0: unknown.
+  bool classic_only = true;    ///< Answers FD frames with error frames.
+  bool watchdog = false;       ///< The drive's own: stops it without commands; set or verified by enabling.
   ModeSet modes;
   SpringRange spring_range;  ///< Bounds impedance targets, at the output of the model's own gear.
   DriveFrames frames;

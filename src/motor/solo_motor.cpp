@@ -14,10 +14,6 @@ namespace {
 // A field of twelve bits, less half a step.
 constexpr double kSpeedFieldShare = 1.0 - 1.0 / 4096.0;
 
-[[nodiscard]] Duration periodOf(int hz) noexcept {
-  return std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
-}
-
 }  // namespace
 
 double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from costs import SLOWEST, Budget, compiled_files, measured_tests, slowest
+from costs import SLOWEST, Budget, compiled_files, measured_tests, pace, slowest
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,6 +49,15 @@ def test_the_slowest_come_first_and_the_others_not_at_all(tmp_path: Path, builds
     assert title == "slowest tests"
     assert [row.split()[-1] for row in rows] == [f"test_{n}" for n in range(SLOWEST + 2, 2, -1)]
     assert files.splitlines() == ["slowest files", "     2.5 s  dev/src/app/new.cpp.o"]
+
+
+def test_one_slow_compilation_does_not_make_a_slow_machine(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    budget = Budget("2 cores", 2.0, {}, {})
+    compilations = iter((2.4, 9.0, 2.2))
+    monkeypatch.setattr("costs.reference_cpu_s", lambda: next(compilations))
+    assert pace(budget) == pytest.approx(1.2)
 
 
 def test_where_nothing_was_measured_nothing_is_said(tmp_path: Path) -> None:

@@ -87,14 +87,31 @@ void readLoops(MotorParse& in) {
   in.motor().velocity_limit_rpm = in.motor().loops.velocity_limit_rpm;
 }
 
+// One lost answer is no restart.
+void checkCommandSpacing(MotorParse& in) {
+  const Duration most = in.traits.restart_silence / 2;
+  const int tick_hz = in.motor().tick_hz;
+  const auto spacing = in.motor().command_divider * periodOf(tick_hz);
+  if (most <= Duration::zero() || spacing <= most) return;
+  const auto given = in.settings.find("command_divider");
+  if (!given) return;  // of 1: no tick is so long
+  const auto most_ms = most / std::chrono::milliseconds{1};
+  in.problems.error(given->place(), given->path,
+                    given->text() + " asks the drive every " +
+                        numberText(std::chrono::duration<double, std::milli>(spacing).count()) +
+                        " ms, and one that is silent for " + std::to_string(2 * most_ms) +
+                        " ms counts as restarted; use at most " + std::to_string(most_ms * tick_hz / 1000));
+}
+
 void readRates(MotorParse& in) {
   in.settings.read("command_divider", in.motor().command_divider);
+  checkCommandSpacing(in);
   in.motor().feedback_hz =
       in.traits.asked
           ? std::max(1, in.motor().tick_hz / (in.motor().command_divider * in.traits.samples_every))
           : in.traits.feedback_hz;
   in.settings.read("feedback_hz", in.motor().feedback_hz);
-  const auto period = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / in.motor().feedback_hz;
+  const auto period = periodOf(in.motor().feedback_hz);
   in.draft.config.feedback_timeout = std::max<Duration>(kFreshEnough, kPeriodsToStale * period);
   if (const auto timeout = in.settings.number("feedback_timeout_ms")) {
     in.draft.config.feedback_timeout = std::chrono::milliseconds{static_cast<int>(*timeout)};
@@ -112,7 +129,7 @@ void readRates(MotorParse& in) {
 }
 
 void checkFeedback(MotorParse& in) {
-  const auto period = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / in.motor().feedback_hz;
+  const auto period = periodOf(in.motor().feedback_hz);
   const auto given = in.settings.find("feedback_timeout_ms");
   if (!given || in.draft.config.feedback_timeout >= 2 * period) return;
   const int rate_hz = in.motor().feedback_hz;

@@ -66,6 +66,8 @@ class LktechFamily final : public MotorFamily {
     traits.frozen_a = static_cast<float>(model.amperes_per_raw * lktech::kRawCurrentMax);
     traits.signed_a = traits.frozen_a;
     traits.asked = true;
+    // After a shorter silence the encoder shows which way it went.
+    traits.restart_silence = std::chrono::milliseconds{100};
     static constexpr DriveSetup kSetup{.tool = "LK Motor Tool (over its serial port)"};
     traits.setup = &kSetup;
     traits.frames = kLktechFrames;

@@ -18,8 +18,6 @@ constexpr Duration kLktechStepPatience = std::chrono::milliseconds{50};
 constexpr int kLktechStepTries = 5;
 constexpr Duration kLktechQuerySpacing = std::chrono::milliseconds{50};
 constexpr Duration kLktechUrgentQuerySpacing = std::chrono::milliseconds{10};
-/// After a shorter silence the drive has not been restarted, and the encoder shows which way it went.
-constexpr Duration kLktechRestartSilence = std::chrono::milliseconds{100};
 /// A frame with the shape of a command is a reply only if the motor is known to be about so cold.
 constexpr float kLktechNearZeroC = 2.0F;
 constexpr int kZeroAnglesBelieved = 3;
@@ -106,7 +104,7 @@ void LKTech_Motor::takeReading(const CanFrame& frame) noexcept {
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
   feedback_.velocity_rpm =
       static_cast<float>(toOutput(reading.rotor_deg_s / traits().gear_ratio) / kDegPerSPerRpm);
-  if (silence > kLktechRestartSilence && counted_) {
+  if (silence > traits().restart_silence && counted_) {
     counted_ = false;
     next_query_ = {};
   }
@@ -185,7 +183,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
   if (enabling() && begins()) beginEnabling();
   if (std::exchange(clear_, false)) outbox_.add(lktech::request(id_, lktech::Code::kClear));
   // A drive that has just started must get no target in turns that it counted before.
-  if (!heard_ || tick.now - *heard_ > kLktechRestartSilence) counted_ = false;
+  if (!heard_ || tick.now - *heard_ > traits().restart_silence) counted_ = false;
   due_ = due(tick);
   if (!due_) return;
 

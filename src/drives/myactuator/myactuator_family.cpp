@@ -74,6 +74,8 @@ class MyactuatorFamily final : public MotorFamily {
     traits.signed_a = traits.frozen_a;
     traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;
+    // No such drive starts faster: its bootloader alone takes longer.
+    traits.restart_silence = std::chrono::milliseconds{100};
     traits.frames = kMyactuatorFrames;
     traits.setup = &myactuatorSetup();
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,

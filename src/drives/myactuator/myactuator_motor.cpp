@@ -19,9 +19,6 @@ constexpr int kMyactuatorStepTries = 5;
 /// Errors and run time, in turns.
 constexpr Duration kMyactuatorQuerySpacing = std::chrono::milliseconds{50};
 constexpr Duration kMyactuatorUrgentQuerySpacing = std::chrono::milliseconds{10};
-/// No such drive starts faster than this (its bootloader alone takes longer): after a shorter silence it has
-/// not been restarted.
-constexpr Duration kMyactuatorRestartSilence = std::chrono::milliseconds{100};
 /// By how much the drive's clock may be behind ours.
 constexpr std::int64_t kUptimeSlackMs = 250;
 constexpr std::int64_t kUptimeDriftDivider = 200;  // 0.5 %
@@ -93,7 +90,7 @@ FrameVerdict MyActuator_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
 // After a silence the drive may have been restarted, and its angle may mean something else.
 void MyActuator_Motor::watchSilence(MonotonicTime received) noexcept {
-  if (!heard_ || received - *heard_ > kMyactuatorRestartSilence) {
+  if (!heard_ || received - *heard_ > traits().restart_silence) {
     running_ = false;
     next_query_ = {};
   }
@@ -196,7 +193,7 @@ void MyActuator_Motor::update(const Tick& tick) noexcept {
   if (enabling() && begins()) beginEnabling();
   if (std::exchange(reset_, false)) outbox_.add(myactuator::request(id_, myactuator::Code::kReset));
   // A drive that has just started must get no target in turns that it counted before.
-  if (!heard_ || tick.now - *heard_ > kMyactuatorRestartSilence) running_ = false;
+  if (!heard_ || tick.now - *heard_ > traits().restart_silence) running_ = false;
   if (!due(tick)) return;
 
   limits_ = 0;  // of its turn: between turns what acts goes on

@@ -375,6 +375,22 @@ TEST(MotorRules, ChangesOfALoadComeInTheOrderOfTimeAndChangeSomething) {
               ElementsAre(testing::HasSubstr("changes[0].stalled: unknown key")));
 }
 
+TEST(MotorRules, ADriveThatOnlyAnswersIsAskedBeforeItsSilenceIsARestart) {
+  int judged = 0;
+  for (const auto& entry : motorFamilies()) {
+    if (entry.family->name() != "LK-Tech" && entry.family->name() != "MyActuator") continue;
+    ++judged;
+    const std::string model{entry.family->models().front()};
+    const std::string motor = "{name: a, model: " + model + ", id: 1, command_divider: ";
+    EXPECT_THAT(errorsOfMotor(motor + "50}"), IsEmpty());
+    EXPECT_THAT(
+        errorsOfMotor(motor + "51}"),
+        ElementsAre(EndsWith("command_divider: 51 asks the drive every 51 ms, and one that is silent for "
+                             "100 ms counts as restarted; use at most 50")));
+  }
+  EXPECT_EQ(judged, 2);
+}
+
 TEST(MotorRules, APayloadHasAnArm) {
   EXPECT_THAT(
       errorsOfWheel("simulated: {payload_kg: 1}"),
