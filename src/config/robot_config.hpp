@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -164,6 +165,12 @@ struct RobotConfig {
   /// Phase of the ticks' grid, after multiples of period() on `phase_clock`.
   [[nodiscard]] Duration phase() const noexcept {
     return Duration{static_cast<Duration::rep>(phase_of_period * static_cast<double>(period().count()))};
+  }
+  /// Whether rc10-guard is to watch it: motors on a bus of SocketCAN keep their last command.
+  [[nodiscard]] bool wantsGuard() const noexcept {
+    return guard != GuardPolicy::kOff && std::any_of(buses.begin(), buses.end(), [](const BusConfig& bus) {
+             return bus.type == BusType::kSocketCan && !bus.motors.empty();
+           });
   }
 };
 

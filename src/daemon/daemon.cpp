@@ -146,10 +146,7 @@ Result<void> Daemon::createLoops(int estop_socket) {
 }
 
 Result<void> Daemon::findGuard() {
-  const bool needed = std::any_of(config_.buses.begin(), config_.buses.end(), [](const BusConfig& bus) {
-    return bus.type == BusType::kSocketCan && !bus.motors.empty();
-  });
-  if (config_.guard == GuardPolicy::kOff || !needed) return {};
+  if (!config_.wantsGuard()) return {};
   const bool required = config_.realtime == RealtimePolicy::kRequired;
   const auto standstill = std::max<Duration>(required ? kStandstillInRealTime : kStandstill,
                                              kStandstillPeriods * config_.period());

@@ -52,19 +52,22 @@ Finding checkGovernor(const CpuFacts& cpus) {
               "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor");
 }
 
-Finding checkIsolation(const CpuFacts& cpus, const std::vector<int>& pinned) {
+Finding checkIsolation(const CpuFacts& cpus, const PinnedThreads& threads) {
   const std::string what = "CPU isolation";
-  for (const int cpu : pinned) {
-    if (!has(cpus.online, cpu)) {
-      return fault(
-          what,
-          "the configuration pins rc10d to CPU " + std::to_string(cpu) + "; there are " + listOf(cpus.online),
-          "change `cpu:` in the configuration");
+  for (const auto& cpu : {threads.scheduler, threads.rx}) {
+    if (cpu && !has(cpus.online, *cpu)) {
+      return fault(what,
+                   "the configuration pins rc10d to CPU " + std::to_string(*cpu) + "; there are " +
+                       listOf(cpus.online),
+                   "change `cpu:` in the configuration");
     }
   }
+  std::vector<int> pinned;
+  if (threads.scheduler) pinned.push_back(*threads.scheduler);
+  if (threads.rx && threads.rx_reads_can && threads.rx != threads.scheduler) pinned.push_back(*threads.rx);
   std::vector<int> shared;
   for (const int cpu : pinned) {
-    if (!has(cpus.isolated, cpu) && !has(shared, cpu)) shared.push_back(cpu);
+    if (!has(cpus.isolated, cpu)) shared.push_back(cpu);
   }
   if (!shared.empty()) {
     return warn(what, "rc10d is pinned to CPU " + listOf(shared) + ", which others use too", isolate(shared));
@@ -74,8 +77,8 @@ Finding checkIsolation(const CpuFacts& cpus, const std::vector<int>& pinned) {
     return warn(
         what,
         "CPU " + listOf(cpus.isolated) + " is isolated, and rc10d is not pinned to it: it runs elsewhere",
-        "set `cpu: " + std::to_string(cpus.isolated.back()) +
-            "` in the configuration's sections scheduler and rx");
+        "set `cpu: " + std::to_string(cpus.isolated.back()) + "` in the configuration's section" +
+            (threads.rx_reads_can ? "s scheduler and rx" : " scheduler"));
   }
   if (cpus.online.size() < 3) return pass(what, "none; there are too few CPUs to give one away");
   return warn(what, "rc10d shares its CPU with everything else",

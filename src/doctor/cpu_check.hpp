@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,14 @@ struct CpuFacts {
 
 /// Whether the CPUs keep their frequency.
 [[nodiscard]] Finding checkGovernor(const CpuFacts& cpus);
-/// Whether the CPUs that rc10d is pinned to (`pinned`, from the configuration) exist and are its own.
-[[nodiscard]] Finding checkIsolation(const CpuFacts& cpus, const std::vector<int>& pinned);
+/// CPUs to which the configuration pins threads of rc10d.
+struct PinnedThreads {
+  std::optional<int> scheduler;
+  std::optional<int> rx;
+  bool rx_reads_can = false;  ///< `receive: thread`; else it has no deadline, and may share its CPU.
+};
+
+/// Whether the CPUs that rc10d is pinned to exist, and those of threads with a deadline are its own.
+[[nodiscard]] Finding checkIsolation(const CpuFacts& cpus, const PinnedThreads& threads);
 
 }  // namespace rc10::doctor

@@ -8,9 +8,14 @@
 
 namespace rc10::doctor {
 
-/// Whether the threads that serve an interface (threadsOf()) are above rc10d's own. `rx_priority`: the higher
-/// one of those.
+/// The thread of rc10d that reads the CAN sockets.
+struct CanReader {
+  int priority = 0;
+  bool is_rx = false;  ///< The rx thread, `receive: thread`; else the scheduler.
+};
+
+/// Whether the threads that serve an interface (threadsOf()) are above the one that reads their frames.
 [[nodiscard]] Finding checkInterruptThreads(const std::string& interface, const std::vector<Process>& threads,
-                                            int rx_priority);
+                                            const CanReader& reader);
 
 }  // namespace rc10::doctor

@@ -1,7 +1,10 @@
 #include "doctor/limits_check.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <sstream>
+
+#include "app/guard_priority.hpp"
 
 namespace rc10::doctor {
 namespace {
@@ -63,16 +66,19 @@ bool serviceInstalled(const HostFiles& files) {
   return false;
 }
 
-Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, bool service, int priority) {
+Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, bool service,
+                           const PriorityNeeds& needs) {
   const std::string what = "real-time priority limit";
   if (limits.may_anyway) return pass(what, who + " has CAP_SYS_NICE");
   if (!limits.realtime_priority)
     return warn(what, "the limits of " + who + " cannot be read", "run it as the user of rc10d");
   const auto limit = *limits.realtime_priority;
+  const int priority = needs.guard ? std::max(needs.rc10d, kGuardPriority) : needs.rc10d;
   if (limit == LimitFacts::kUnlimited || limit >= priority)
     return pass(what, who + " may have up to " + (limit < 0 ? "any" : std::to_string(limit)));
   return tooLow(what,
-                who + " may have up to " + std::to_string(limit) + ", rc10d asks for " +
+                who + " may have up to " + std::to_string(limit) + ", " +
+                    (needs.rc10d < priority ? "rc10-guard" : "rc10d") + " asks for " +
                     std::to_string(priority) + " (which members of the group rc10-dev get from the package)",
                 limits, "rtprio 90", service);
 }

@@ -24,10 +24,15 @@ struct LimitFacts {
 /// Whether rc10d's service is installed on this computer: it has limits of its own.
 [[nodiscard]] bool serviceInstalled(const HostFiles& files);
 
-/// `who`: "rc10d (pid 12)" or "this shell"; `service`: a shell's limits matter less where there is a service;
-/// `priority`: the highest that rc10d asks for.
+/// Highest priorities that the processes of a robot ask for.
+struct PriorityNeeds {
+  int rc10d = 0;
+  bool guard = false;  ///< rc10-guard runs beside rc10d, which may be the one that starts it.
+};
+
+/// `who`: "rc10d (pid 12)" or "this shell"; `service`: a shell's limits matter less where there is a service.
 [[nodiscard]] Finding checkRealtimeLimit(const LimitFacts& limits, const std::string& who, bool service,
-                                         int priority);
+                                         const PriorityNeeds& needs);
 [[nodiscard]] Finding checkMemoryLimit(const LimitFacts& limits, const std::string& who, bool service);
 
 }  // namespace rc10::doctor

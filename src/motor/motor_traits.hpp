@@ -44,6 +44,9 @@ struct MotorTraits {
   const CascadeConfig* host_loops = nullptr;  ///< Defaults of its loops on the host; null: it has none.
   bool own_velocity_loop = false;             ///< The angle loop alone of host_loops acts.
   const DriveSetup* setup = nullptr;          ///< Settings that can be written; null: none.
+
+  /// Whether its velocity loop runs on the host, as well as its angle loop.
+  [[nodiscard]] bool hostVelocityLoop() const noexcept { return host_loops != nullptr && !own_velocity_loop; }
 };
 
 }  // namespace rc10

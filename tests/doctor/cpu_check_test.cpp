@@ -36,11 +36,19 @@ TEST(CpuCheck, CpusOfAFixedFrequencyHaveNoGovernor) {
 
 TEST(CpuCheck, APinnedCpuHasToExistAndToBeIsolated) {
   const CpuFacts cpus{.online = {0, 1, 2, 3}, .isolated = {3}, .governors = {}};
-  EXPECT_EQ(checkIsolation(cpus, {3, 3}).verdict, Verdict::kPass);
-  const auto shared = checkIsolation(cpus, {2, 3});
+  EXPECT_EQ(checkIsolation(cpus, {.scheduler = 3, .rx = 3, .rx_reads_can = true}).verdict, Verdict::kPass);
+  const auto shared = checkIsolation(cpus, {.scheduler = 2, .rx = 3, .rx_reads_can = true});
   EXPECT_EQ(shared.verdict, Verdict::kWarn);
   EXPECT_THAT(shared.fix, HasSubstr("domain,2 nohz_full=2"));
-  EXPECT_EQ(checkIsolation(cpus, {4}).verdict, Verdict::kFail);
+  EXPECT_EQ(checkIsolation(cpus, {.scheduler = 4, .rx = {}}).verdict, Verdict::kFail);
+}
+
+TEST(CpuCheck, AReceiveThreadThatReadsNoCanMayShareItsCpu) {
+  const CpuFacts cpus{.online = {0, 1, 2, 3}, .isolated = {3}, .governors = {}};
+  EXPECT_EQ(checkIsolation(cpus, {.scheduler = 3, .rx = 2}).verdict, Verdict::kPass);
+  EXPECT_EQ(checkIsolation(cpus, {.scheduler = 3, .rx = 2, .rx_reads_can = true}).verdict, Verdict::kWarn);
+  EXPECT_EQ(checkIsolation(cpus, {.scheduler = 3, .rx = 4}).verdict, Verdict::kFail) << "there is none";
+  EXPECT_THAT(checkIsolation(cpus, {}).fix, HasSubstr("section scheduler"));
 }
 
 TEST(CpuCheck, AnIsolatedCpuThatNobodyUsesIsTold) {

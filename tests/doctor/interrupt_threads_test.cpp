@@ -55,7 +55,9 @@ class SpiHat : public ::testing::Test {
   [[nodiscard]] std::vector<Process> threads(const std::string& interface) const {
     return threadsOf(interface, files, readProcesses(files));
   }
-  [[nodiscard]] Finding finding() const { return checkInterruptThreads("can0", threads("can0"), 65); }
+  [[nodiscard]] Finding finding() const {
+    return checkInterruptThreads("can0", threads("can0"), {.priority = 65, .is_rx = true});
+  }
   [[nodiscard]] std::vector<std::string> changes(const std::vector<std::string>& interfaces) const {
     std::vector<std::string> texts;
     for (const auto& [interface, thread] : priorityChanges(interfaces, 70, files, readProcesses(files))) {
@@ -84,8 +86,18 @@ TEST_F(SpiHat, RaisedThreadsPass) {
 
 TEST_F(SpiHat, AboveAReceiveThreadWithAnotherPriorityTheyNeedAnotherToo) {
   thread(root, 57, "irq/57-spi0.0", 70, 1);
-  EXPECT_THAT(checkInterruptThreads("can0", threads("can0"), 75).fix,
+  EXPECT_THAT(checkInterruptThreads("can0", threads("can0"), {.priority = 75, .is_rx = true}).fix,
               HasSubstr("rc10-irq --watch --priority 76"));
+}
+
+TEST_F(SpiHat, WhereTheTickReadsCanTheyBelongAboveTheScheduler) {
+  thread(root, 12, "spi0", 62, 1);
+  thread(root, 57, "irq/57-spi0.0", 62, 1);
+  EXPECT_EQ(finding().verdict, Verdict::kWarn) << "a receive thread of 65";
+  EXPECT_EQ(checkInterruptThreads("can0", threads("can0"), {.priority = 60}).verdict, Verdict::kPass);
+  const auto low = checkInterruptThreads("can0", threads("can0"), {.priority = 75});
+  EXPECT_THAT(low.why, HasSubstr("below rc10d's scheduler (75)"));
+  EXPECT_THAT(low.fix, HasSubstr("--priority 76   # or a lower priority of scheduler"));
 }
 
 TEST_F(SpiHat, AThreadWithoutRealTimePriorityIsTooLow) {
@@ -163,7 +175,7 @@ TEST(InterruptThreads, AVirtualInterfaceHasNone) {
   const auto files = root.files();
   const auto processes = readProcesses(files);
   EXPECT_THAT(threadsOf("vcan0", files, processes), IsEmpty());
-  EXPECT_EQ(checkInterruptThreads("vcan0", {}, 65).verdict, Verdict::kPass);
+  EXPECT_EQ(checkInterruptThreads("vcan0", {}, {.priority = 65}).verdict, Verdict::kPass);
   EXPECT_THAT(missingThreads("vcan0", files, processes), HasSubstr("has none"));
 }
 

@@ -13,6 +13,7 @@
 #include "drives/dji/dji_group.hpp"
 #include "drives/dji/dji_motor.hpp"
 #include "drives/dji/dji_simulated.hpp"
+#include "motor/geared_loops.hpp"
 #include "sim/sim_port.hpp"
 #include "support/dji_frames.hpp"
 
@@ -77,7 +78,8 @@ class SimRig {
     config.id = drive.id;
     config.own = djiOwn(drive.command);
     config.gear_ratio = drive.gear_ratio;
-    config.loops = drive.model->command(drive.command).default_loops;
+    config.loops = loopsBehindGear(drive.model->command(drive.command).default_loops,
+                                   gearRatioOf(config, *drive.model) / drive.model->gear_ratio);
     motors_.push_back(std::make_unique<DJI_Motor>(config));
     (void)bus_->registerMotor(*motors_.back());
     for (auto& group : groups_) {

@@ -8,7 +8,7 @@ namespace rc10 {
 /// Whether the velocity loop is to be incremental: as given, else as in the defaults.
 [[nodiscard]] bool wantsIncremental(const Settings& motor, const CascadeConfig& defaults);
 
-/// The model's default loops with the keys that are given replaced.
+/// The default loops with the keys that are given replaced.
 [[nodiscard]] CascadeConfig buildLoops(const Settings& motor, const CascadeConfig& defaults, bool volts);
 
 }  // namespace rc10

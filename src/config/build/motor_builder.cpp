@@ -16,6 +16,8 @@
 #include "config/keys/value_check.hpp"
 #include "config/motor_families.hpp"
 #include "config/yaml/number_text.hpp"
+#include "motor/geared_loops.hpp"
+#include "motor/solo_motor.hpp"
 
 namespace rc10 {
 namespace {
@@ -56,7 +58,8 @@ void checkKeys(MotorParse& in) {
   const MotorNature nature{in.motor().model, in.traits, in.knowsItsAngle(),
                            has_loops && wantsIncremental(in.settings, *in.traits.host_loops), shares};
   checkNeeds(in.settings, kMotorSection, nature, in.problems);
-  if (has_loops) checkNeeds(in.settings.section("velocity_pid"), kVelocityPidSection, nature, in.problems);
+  if (in.traits.hostVelocityLoop())
+    checkNeeds(in.settings.section("velocity_pid"), kVelocityPidSection, nature, in.problems);
 }
 
 void readEffortLimit(MotorParse& in) {
@@ -83,7 +86,8 @@ void readZero(MotorParse& in) {
 void readLoops(MotorParse& in) {
   in.settings.read("velocity_limit_rpm", in.motor().velocity_limit_rpm);
   if (in.traits.host_loops == nullptr) return;
-  in.motor().loops = buildLoops(in.settings, *in.traits.host_loops, in.byVoltage());
+  const CascadeConfig defaults = loopsBehindGear(*in.traits.host_loops, driveTurns(in.motor(), in.traits));
+  in.motor().loops = buildLoops(in.settings, defaults, in.byVoltage());
   in.motor().velocity_limit_rpm = in.motor().loops.velocity_limit_rpm;
 }
 

@@ -78,7 +78,7 @@ void readShaping(MotorParse& in) {
   } else {
     shaping.approach_rpm_per_deg = kNativeApproach;
   }
-  if (in.traits.host_loops != nullptr && !in.traits.own_velocity_loop) {
+  if (in.traits.hostVelocityLoop()) {
     shaping.approach_effort_per_rpm = velocityKp(in.motor().loops);
     shaping.approach_effort_is_gain = true;
   } else if (in.noLoadRpm() > 0.0) {

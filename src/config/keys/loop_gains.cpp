@@ -66,7 +66,7 @@ std::uint16_t unmetNeeds(const Key& key, const MotorLoops& loops) {
 }
 
 bool closed(std::string_view loop, const MotorLoops& loops) {
-  return loops.onHost() && !(loop == kVelocity && loops.traits.own_velocity_loop);
+  return loop == kVelocity ? loops.traits.hostVelocityLoop() : loops.onHost();
 }
 
 constexpr std::string_view kAtStartOnly =

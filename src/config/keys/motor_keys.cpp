@@ -61,7 +61,9 @@ constexpr std::array kMotorKeys{
     Key{.name = "gear_ratio",
         .kind = kNumber,
         .range = {.min = 0, .max = 10'000, .above_min = true},
-        .about = "Rotor turns per turn of the output shaft. Default: of the model."},
+        .about =
+            "Rotor turns per turn of the output shaft. Default: of the model. Default gains, speed limits "
+            "and thresholds follow it; those in the file hold as they are written."},
     Key{.name = "current_limit_a",
         .kind = kNumber,
         .unit = "A",
@@ -341,8 +343,9 @@ constexpr std::array kMotorKeys{
     Key{.name = "velocity_pid",
         .kind = kSection,
         .section = &kVelocityPidSection,
-        .needs = kNeedsHostLoops,
-        .about = "Velocity loop: rpm to A, or to V. Keys not given keep the model's defaults."},
+        .needs = kNeedsHostLoops | kNeedsHostVelocity,
+        .about = "Velocity loop: rpm to A, or to V. Keys not given keep the model's defaults, per rpm behind "
+                 "gear_ratio. Not for a VESC, which closes it itself."},
     Key{.name = "angle_pid",
         .kind = kSection,
         .section = &kAnglePidSection,

@@ -12,6 +12,8 @@ std::string whyMeaningless(const Key& key, std::uint16_t unmet, const MotorNatur
     return (chosen ? "with command: current the " : "the ") + model + " is commanded in amperes" + use_twin;
   }
   if ((unmet & kNeedsHostLoops) != 0) return "the " + model + " has loops of its own; remove it";
+  if ((unmet & kNeedsHostVelocity) != 0)
+    return "the " + model + " closes its velocity loop itself, and only angle_pid acts; remove it";
   if ((unmet & kNeedsUnasked) != 0) return "the " + model + " sends nothing but answers; use command_divider";
   if ((unmet & kNeedsOwnFrames) != 0)
     return "the " + model + " shares its command frames with other motors; remove it";
@@ -37,6 +39,7 @@ std::uint16_t MotorNature::metNeeds() const noexcept {
   if (traits.reports_angle) met |= kNeedsAngle;
   if (absolute) met |= kNeedsAbsolute;
   if (traits.host_loops != nullptr) met |= kNeedsHostLoops;
+  if (traits.hostVelocityLoop()) met |= kNeedsHostVelocity;
   if (!traits.asked) met |= kNeedsUnasked;
   if (!shares_frames) met |= kNeedsOwnFrames;
   return static_cast<std::uint16_t>(met);

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "app/guard_priority.hpp"
 #include "config/keys/key_table.hpp"
 
 namespace rc10 {
@@ -27,10 +28,10 @@ std::vector<std::string_view> phaseClocks() { return {"monotonic", "realtime"}; 
 
 std::vector<std::string_view> receivePolicies() { return {"tick", "thread"}; }
 
-// Between "lines", one below the scheduler, and rc10-guard (80), which a tick that spins must not keep from
-// the CPU.
-constexpr Range kSchedulerPriorities{.min = 2, .max = 78};
-constexpr Range kRxPriorities{.min = 3, .max = 79};
+// Between "lines", one below the scheduler, and rc10-guard, which a tick that spins must not keep from the
+// CPU.
+constexpr Range kSchedulerPriorities{.min = 2, .max = kGuardPriority - 2};
+constexpr Range kRxPriorities{.min = 3, .max = kGuardPriority - 1};
 constexpr Range kCpus{.min = 0, .max = 1023};
 
 constexpr std::array kSchedulerKeys{

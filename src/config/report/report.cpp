@@ -199,9 +199,10 @@ std::string loopsText(const BusConfig& bus) {
   for (const auto& motor : bus.motors) {
     const CascadeConfig& loops = motor.settings.loops;
     const float limit_rpm = motor.settings.velocity_limit_rpm;
-    const bool on_host = motor.traits().host_loops != nullptr;
+    const MotorTraits traits = motor.traits();
     table.add({motor.name(), limitText(motor), limit_rpm > 0.0F ? rounded(limit_rpm) + " rpm" : "its own",
-               on_host ? velocityLoopText(loops) : "its own", on_host ? angleLoopText(loops) : "its own"});
+               traits.hostVelocityLoop() ? velocityLoopText(loops) : "its own",
+               traits.host_loops != nullptr ? angleLoopText(loops) : "its own"});
   }
   return table.text(2);
 }

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "app/guard_priority.hpp"
 #include "app/sanitizers.hpp"
 #include "app/subnormals.hpp"
 
@@ -34,10 +35,11 @@ constexpr std::size_t kPrefaultBytes = std::size_t{96} * 1024;
 [[nodiscard]] std::string rightsHint(int priority) {
   rlimit limit{};
   getrlimit(RLIMIT_RTPRIO, &limit);
+  const int enough = std::max(priority, kGuardPriority);  // of the guard as well
   return fmt::format(
       "RLIMIT_RTPRIO is {}: run under systemd with LimitRTPRIO={}, or add `YOUR_NAME - rtprio {}` to "
       "a file in /etc/security/limits.d/, or run as root{}",
-      limit.rlim_cur, std::max(priority, 80), std::max(priority, 80),
+      limit.rlim_cur, enough, enough,
       limit.rlim_cur >= static_cast<rlim_t>(priority)
           ? "; if root is refused too, the kernel has RT_GROUP_SCHED: `sysctl -w "
             "kernel.sched_rt_runtime_us=-1`"

@@ -134,7 +134,7 @@ constexpr ModeSet kVescModesWithAngle{ControlMode::kCoast, ControlMode::kCurrent
 // Only the angle loop runs on the host: its output is a speed. 1.5 rpm/deg is a crossover of 9 rad/s, which
 // leaves 75 degrees of phase for one sample of delay and the wait for the tick at 50 Hz.
 constexpr CascadeConfig kAngleLoop{
-    .velocity = PID_Position::Config{.kp = 0.1F}, .angle = {.kp = 1.5F}, .velocity_limit_rpm = 0.0F};
+    .velocity = PID_Position::Config{}, .angle = {.kp = 1.5F}, .velocity_limit_rpm = 0.0F};
 
 // The q current of a VESC is the peak of the phase current.
 static_assert(kTorqueTimesKv > 8.269 && kTorqueTimesKv < 8.271);

@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/guard_priority.hpp"
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
 #include "app/standard_output.hpp"
@@ -31,8 +32,6 @@ constexpr int kOk = 0;
 constexpr int kFailed = 1;
 constexpr int kBadUsage = 2;
 
-// Above every thread of rc10d: what hangs may be one of them.
-constexpr int kPriority = 80;
 // A service manager that ends us while drives are told to rest waits longer.
 constexpr int kLastSteps = 1000 / static_cast<int>(Standstill::kStepMs);
 
@@ -86,9 +85,10 @@ sigset_t catchSignals() noexcept {
 // A refused right costs reaction time, not the guard: rc10d says whether real time is required.
 void becomeRealTime() {
   sched_param param{};
-  param.sched_priority = kPriority;
+  param.sched_priority = kGuardPriority;
   if (::sched_setscheduler(0, SCHED_FIFO, &param) != 0)
-    tell(std::string("not real-time: SCHED_FIFO 80 was refused (") + std::strerror(errno) + ")");
+    tell("not real-time: SCHED_FIFO " + std::to_string(kGuardPriority) + " was refused (" +
+         std::strerror(errno) + ")");
   if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
     tell(std::string("not real-time: memory could not be locked (") + std::strerror(errno) + ")");
 }

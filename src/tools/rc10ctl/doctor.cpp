@@ -58,10 +58,8 @@ class Doctor {
     examineLimits();
     const auto cpus = doctor::readCpus(files_);
     tell(doctor::checkGovernor(cpus));
-    std::vector<int> pinned;
-    for (const auto& thread : {robot_.scheduler, robot_.rx})
-      if (thread.cpu) pinned.push_back(*thread.cpu);
-    tell(doctor::checkIsolation(cpus, pinned));
+    tell(doctor::checkIsolation(
+        cpus, {.scheduler = robot_.scheduler.cpu, .rx = robot_.rx.cpu, .rx_reads_can = rxReadsCan()}));
   }
 
   void examineBuses() {
@@ -71,7 +69,9 @@ class Doctor {
       for (const auto& finding : doctor::checkCanLink(facts)) tell(finding);
       if (!facts.link) continue;
       tell(doctor::checkInterruptThreads(
-          facts.interface, doctor::threadsOf(facts.interface, files_, processes_), robot_.rx.priority));
+          facts.interface, doctor::threadsOf(facts.interface, files_, processes_),
+          {.priority = rxReadsCan() ? robot_.rx.priority : robot_.scheduler.priority,
+           .is_rx = rxReadsCan()}));
       holders[facts.interface] = link::holderOfInterface(facts.interface);
     }
     if (wanted.empty()) tell(noInterfaces());
@@ -113,15 +113,19 @@ class Doctor {
     findings_.push_back(std::move(finding));
   }
 
+  bool rxReadsCan() const { return robot_.receive == ReceivePolicy::kThread; }
+
   void examineLimits() {
     const bool runs = !daemons_.empty();
     const std::string pid = runs ? std::to_string(daemons_.front().pid) : "self";
     const std::string who = runs ? "rc10d (pid " + pid + ")" : "this shell";
     const auto limits = doctor::readLimits(files_, pid);
     const bool service = !runs && doctor::serviceInstalled(files_);
-    // The threads of the e-stop input and the heartbeat are one above the scheduler's.
-    const int priority = std::max(robot_.rx.priority, robot_.scheduler.priority + 1);
-    tell(doctor::checkRealtimeLimit(limits, who, service, priority));
+    // The threads of the e-stop input and the heartbeat are one above the scheduler's. Without a
+    // configuration there may be real buses, which a guard watches.
+    const doctor::PriorityNeeds needs{.rc10d = std::max(robot_.rx.priority, robot_.scheduler.priority + 1),
+                                      .guard = !config_ || robot_.wantsGuard()};
+    tell(doctor::checkRealtimeLimit(limits, who, service, needs));
     tell(doctor::checkMemoryLimit(limits, who, service));
   }
 

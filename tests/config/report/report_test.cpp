@@ -103,6 +103,21 @@ TEST(Report, ShowsLimitsAndLoopsOfEachMotor) {
   EXPECT_THAT(wordsAfter(report(), "yaw", 1), ::testing::Contains("V"));
 }
 
+TEST(Report, ShowsTheGainsThatActBehindAGear) {
+  const auto text =
+      describe(parseRobotConfig(robotWith("{name: bare, model: M3508, id: 1, gear_ratio: 1}"), "hero.yaml")
+                   .config.value());
+  EXPECT_THAT(text, HasSubstr("9217.54 rpm  position, kp 0.0104149, ki 0.0833194, kd 0  "
+                              "kp 4, ki 0, kd 0, up to 3840.64 rpm"));
+}
+
+TEST(Report, NamesNoVelocityLoopThatTheDriveClosesItself) {
+  const auto text =
+      describe(parseRobotConfig(robotWith("{name: wheel, model: VESC, id: 1, pole_pairs: 7}"), "hero.yaml")
+                   .config.value());
+  EXPECT_THAT(text, HasSubstr("its own   its own        kp 1.5, ki 0, kd 0\n"));
+}
+
 TEST(Report, ListsTheModesTheMotorsTake) {
   EXPECT_THAT(report(), HasSubstr("modes of all: coast, current, velocity, angle, total_angle, brake\n"));
   EXPECT_THAT(report(), HasSubstr("modes of all: coast, velocity, angle, total_angle, voltage, brake\n"));
