@@ -79,6 +79,8 @@ class AcmeFamily final : public MotorFamily {
       traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                              ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
       traits.frames.brake = traits.frames.hold = Provision::kHostLoop;
+    } else {
+      traits.unseen_limit = "it reports no current; take a Turner-C";
     }
     return traits;
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "motor/drive_frames.hpp"
 #include "motor/drive_setup.hpp"
 #include "motor/motor_base.hpp"
@@ -44,6 +46,11 @@ struct MotorTraits {
   const CascadeConfig* host_loops = nullptr;  ///< Defaults of its loops on the host; null: it has none.
   bool own_velocity_loop = false;             ///< The angle loop alone of host_loops acts.
   const DriveSetup* setup = nullptr;          ///< Settings that can be written; null: none.
+  /// Remedy, in words, where a loop of the drive may be at a limit of its current that is not seen; empty:
+  /// seen.
+  std::string_view unseen_limit{};
+  /// Key with the drive's own limit of the current, which its loops obey in place of current_limit_a.
+  std::string_view own_limit_key{};
 
   /// Whether its velocity loop runs on the host, as well as its angle loop.
   [[nodiscard]] bool hostVelocityLoop() const noexcept { return host_loops != nullptr && !own_velocity_loop; }

@@ -14,6 +14,9 @@ namespace {
 // A field of twelve bits, less half a step.
 constexpr double kSpeedFieldShare = 1.0 - 1.0 / 4096.0;
 
+// Noise of a measured current, and error of a torque constant by which it is reckoned.
+constexpr double kCurrentErrorShare = 0.05;
+
 }  // namespace
 
 double driveTurns(const MotorSettings& settings, const MotorTraits& traits) noexcept {
@@ -139,7 +142,14 @@ Target SoloMotor::resolved() noexcept {
 }
 
 bool SoloMotor::currentAtLimit(double count_a) const noexcept {
-  return std::abs(static_cast<double>(feedback_.current_a)) >= static_cast<double>(effortLimit()) - count_a;
+  const auto limit_a = static_cast<double>(effortLimit());
+  const auto full_a = static_cast<double>(traits_.signed_a);
+  return currentAtLimit(full_a > 0.0 ? std::min(limit_a, full_a) : limit_a, count_a);
+}
+
+bool SoloMotor::currentAtLimit(double limit_a, double count_a) const noexcept {
+  const double margin_a = std::max(count_a, kCurrentErrorShare * limit_a);
+  return std::abs(static_cast<double>(feedback_.current_a)) >= limit_a - margin_a;
 }
 
 double SoloMotor::currentWithinLimit(const Target& target) noexcept {

@@ -98,8 +98,11 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// To be called once in each update().
   [[nodiscard]] Target wanted() noexcept;
 
-  /// Whether the measured current is at its limit; `count_a`: the resolution of the current on the wire, A.
+  /// Whether the measured current is at its limit, or at the end of what the drive can report; `count_a`: the
+  /// resolution of the current on the wire, A.
   [[nodiscard]] bool currentAtLimit(double count_a) const noexcept;
+  /// The same of another limit, A: that of the drive.
+  [[nodiscard]] bool currentAtLimit(double limit_a, double count_a) const noexcept;
 
   // A target within the limits of the motor; what they cut off is told in limits_. Not a number: 0.
   /// Current of the mode kCurrent, with the feed-forward that comes with any mode. A at the motor.

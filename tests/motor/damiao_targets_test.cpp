@@ -214,6 +214,16 @@ TEST(DamiaoMotor, ForcePositionStandsWhereNoAngleCanBeFollowed) {
   EXPECT_NE(desk.motor().limits() & kLimitAngle, 0U);
 }
 
+// Beyond its scale a torque is reported as one the other way.
+TEST(DamiaoMotor, ForcePositionIsToldNoMoreTorqueThanTheFeedbackCanTell) {
+  DamiaoDesk desk(damiaoSettingsOf("DM4340", "force_position"));
+  ASSERT_TRUE(desk.enable());
+  desk.motor().order(FrameKind::kHold);
+  const auto sent = desk.tick();
+  ASSERT_GE(sent.size(), 1U);
+  EXPECT_EQ(readLittleEndian<std::uint16_t>(sent[0].data, 6), 6697) << "28 Nm of 4.074 Nm/A times 10.26 A";
+}
+
 TEST(DamiaoMotor, EveryCodeComesBackThroughItsValue) {
   for (std::uint32_t code = 0; code <= 0xFFFF; ++code) {
     ASSERT_EQ(damiao::toCode(damiao::fromCode(code, 12.5, 16), 12.5, 16), code);

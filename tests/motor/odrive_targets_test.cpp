@@ -119,6 +119,26 @@ TEST_F(OdriveMotor, BrakeIsSpeedZeroAndHoldIsThePresentAngle) {
   EXPECT_FLOAT_EQ(numberAt(frames.front(), 0), 0.25F);
 }
 
+TEST_F(OdriveMotor, ItsOwnLoopsAreAtTheLimitByTheTorqueThatItReports) {
+  enable();  // 1 Nm is its limit
+  for (const Target target : {Target{.mode = ControlMode::kVelocity, .value = 10.0},
+                              {.mode = ControlMode::kTotalAngle},
+                              {.mode = ControlMode::kBrake}}) {
+    for (const auto& [reported_nm, limits] :
+         {std::pair{0.94F, 0U}, std::pair{0.96F, std::uint32_t{kLimitCurrent}},
+          std::pair{-1.1F, std::uint32_t{kLimitCurrent}}, std::pair{0.0F, 0U}}) {
+      feed(odrive::Message::kTorques, 0.0F, reported_nm);
+      settledInput(target);
+      EXPECT_EQ(motor_->limits(), limits) << toString(target.mode) << ", " << reported_nm;
+    }
+  }
+  feed(odrive::Message::kTorques, 0.0F, 1.0F);
+  now_ += 3s;
+  sample();
+  settledInput({.mode = ControlMode::kVelocity, .value = 10.0});
+  EXPECT_EQ(motor_->limits(), 0U) << "telemetry ended";
+}
+
 TEST_F(OdriveMotor, LimitsClampWhatIsSentAndSaySo) {
   enable();
   auto frame = settledInput({.mode = ControlMode::kCurrent, .value = -500.0});

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
+#include <string_view>
 
 #include "config/yaml/number_text.hpp"
 
@@ -25,6 +27,7 @@ constexpr float kRest = 0.05F;
 constexpr float kRestOfLimit = 0.5F;
 constexpr Duration kRestTime = std::chrono::milliseconds{100};
 constexpr int kFastCurrentHz = 50;
+constexpr int kReportsOfStall = 2;
 
 // A limit that trips on what is asked for would be of no use.
 void checkOverspeed(MotorParse& in) {
@@ -55,6 +58,30 @@ void checkFollowingError(MotorParse& in) {
   in.problems.error(
       given->place(), given->path,
       "needs angle_slew_deg_per_s: without it every step of the target would be a fault; add it");
+}
+
+void checkStall(MotorParse& in) {
+  const auto given = in.settings.find("stall_ms");
+  const auto stall_ms =
+      std::chrono::duration_cast<std::chrono::milliseconds>(in.draft.config.guard.stall_time);
+  if (!given || stall_ms.count() == 0) return;
+  const std::string_view key = in.traits.own_limit_key;
+  if (!key.empty() && !in.settings.mentions(key)) {
+    in.problems.error(given->place(), given->path,
+                      "needs " + std::string{key} +
+                          ": a stall is a current at the limit that the drive itself has; write what is set "
+                          "there");
+    return;
+  }
+  // The last report stands until the next: of a motor that has braked to a standstill, too.
+  const int current_hz = in.traits.signed_current_hz;
+  if (current_hz <= 0) return;  // with its speed
+  const int least_ms = kReportsOfStall * 1000 / current_hz;
+  if (stall_ms.count() >= least_ms) return;
+  in.problems.error(given->place(), given->path,
+                    given->text() + " ms is shorter than two reports of the current, which comes " +
+                        std::to_string(current_hz) + " times a second; write " + std::to_string(least_ms) +
+                        " or more, or let it come more often");
 }
 
 void readRest(MotorParse& in) {
@@ -106,6 +133,7 @@ void readGuard(MotorParse& in) {
   checkOverspeed(in);
   checkTemperatures(in);
   checkFollowingError(in);
+  checkStall(in);
 }
 
 }  // namespace rc10

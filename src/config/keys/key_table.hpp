@@ -49,6 +49,7 @@ enum Need : std::uint16_t {
   kNeedsSignedCurrent = 1U << 9U,  ///< It reports a current with the sign of its torque.
   kNeedsScaledSpeed = 1U << 10U,   ///< It reports its speed as a share of a range.
   kNeedsAngle = 1U << 11U,         ///< It reports an angle, or what one follows from.
+  kNeedsSeenLimit = 1U << 12U,     ///< Its current is seen to be at the limit, in each mode.
   kNeedsHostVelocity = 1U << 13U,  ///< Its velocity loop runs on the host.
 };
 

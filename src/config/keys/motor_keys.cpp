@@ -142,13 +142,16 @@ constexpr std::array kMotorKeys{
         .kind = kInteger,
         .unit = "ms",
         .range = {.min = 0, .max = 60'000},
+        .needs = kNeedsSeenLimit,
         .default_text = "0",
         .about = "This time at the current or voltage limit without turning (2 % of the no-load speed, or of "
                  "`velocity_limit_rpm` where that is not known; without either 10 rpm) is a stall. 0: not "
-                 "watched."},
+                 "watched. Not where that limit is not seen: Damiao control velocity and position_velocity, "
+                 "CubeMars servo, ODrive without telemetry_hz. A VESC needs motor_current_max_a."},
     Key{.name = "stall_action",
         .kind = kText,
         .choices = stallActions,
+        .needs = kNeedsSeenLimit,
         .default_text = "fault",
         .about = "fault: the motor stops until cleared. notify: the state shows it, nothing else."},
     Key{.name = "rest_current_a",

@@ -89,6 +89,11 @@ constexpr DriveFrames driveFrames(DamiaoControl control) {
   return frames;
 }
 
+/// Its frames carry a limit of the current, or a torque.
+constexpr bool boundsCurrent(DamiaoControl control) {
+  return control == DamiaoControl::kMit || control == DamiaoControl::kForcePosition;
+}
+
 constexpr ModeSet modes(DamiaoControl control) {
   switch (control) {
     case DamiaoControl::kMit:
@@ -138,6 +143,9 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.absolute = model.output_encoder;
   traits.frozen_a = static_cast<float>(model.scale.t_max_nm) / model.torque_nm_per_a;
   traits.signed_a = traits.frozen_a;
+  if (!boundsCurrent(control))
+    traits.unseen_limit =
+        "its drive obeys a limit that no frame carries; write control: mit or force_position";
   traits.scaled_speed = true;
   traits.bounds_effort = control == DamiaoControl::kMit || control == DamiaoControl::kForcePosition;
   traits.asked = true;
@@ -184,8 +192,7 @@ Result<void> DamiaoFamily::check(const MotorSettings& settings) const {
                 digits(period_ms) + " ms");
   }
   const auto* model = findDamiaoModel(settings.model);
-  const bool has_current = own.control == DamiaoControl::kMit || own.control == DamiaoControl::kForcePosition;
-  if (!has_current && model != nullptr && settings.effort_limit > 0.0F &&
+  if (!boundsCurrent(own.control) && model != nullptr && settings.effort_limit > 0.0F &&
       settings.effort_limit < model->current_max_a) {
     return fail("current_limit_a: control " + settings.own.text("control") +
                 " has no limit of current; use control mit or force_position, or set the drive's own "

@@ -40,6 +40,8 @@ double fromCode(double code, double limit, unsigned bits) noexcept {
 
 double positionStep(const DamiaoScale& scale) noexcept { return 2.0 * scale.p_max_rad / full(16); }
 
+double torqueStep(const DamiaoScale& scale) noexcept { return 2.0 * scale.t_max_nm / full(12); }
+
 Payload special(Special command) noexcept {
   return {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, static_cast<std::uint8_t>(command)};
 }

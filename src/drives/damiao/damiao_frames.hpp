@@ -93,6 +93,7 @@ using Payload = std::array<std::uint8_t, 8>;
 }
 /// rad for each step of the position.
 [[nodiscard]] double positionStep(const DamiaoScale& scale) noexcept;
+[[nodiscard]] double torqueStep(const DamiaoScale& scale) noexcept;
 
 // 8 bytes each.
 [[nodiscard]] Payload special(Special command) noexcept;

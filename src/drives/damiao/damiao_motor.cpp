@@ -299,7 +299,11 @@ void Damiao_Motor::followAngle(const Target& target) noexcept {
   }
   // Where it can follow no angle, an angle stands as a brake does.
   const bool holds = target.mode == ControlMode::kTotalAngle || target.mode == ControlMode::kBrake;
-  const double share = static_cast<double>(effortLimit() / traits().effort_full_scale);
+  // A torque beyond the scale of the feedback would be reported as one the other way.
+  const auto nm_per_a = static_cast<double>(traits().torque_nm_per_a);
+  const double limit_a = std::min(static_cast<double>(effortLimit()), own_.scale.t_max_nm / nm_per_a);
+  if (holds && currentAtLimit(limit_a, damiao::torqueStep(own_.scale) / nm_per_a)) limits_ |= kLimitCurrent;
+  const double share = limit_a / static_cast<double>(traits().effort_full_scale);
   command_ = frameOf(command_ids_[0], damiao::forcePosition(static_cast<float>(rad), limit_rad_s,
                                                             holds ? std::min(share, 1.0) : 0.0));
 }

@@ -220,6 +220,7 @@ void ODrive_Motor::followCurrent(const Target& target) noexcept {
 }
 
 void ODrive_Motor::followVelocity(double rpm, float torque_ff_nm) noexcept {
+  if (currentAtLimit(0.0)) limits_ |= kLimitCurrent;
   const double allowed_rpm = rpmWithinLimit(rpm);
   const double ff_nm = torqueWithinLimit(static_cast<double>(torque_ff_nm));
   setInput(odrive::ControlMode::kVelocity,
@@ -239,6 +240,7 @@ void ODrive_Motor::followAngle(const Target& target) noexcept {
   const double turns = std::clamp(wanted_turns, -kFarthestTurns, kFarthestTurns);
   const bool reaches = turns == wanted_turns;
   if (!reaches) limits_ |= kLimitAngle;
+  if (currentAtLimit(0.0)) limits_ |= kLimitCurrent;
   const double ff_rpm = rpmWithinLimit(static_cast<double>(target.velocity_ff_rpm));
   const double ff_nm = torqueWithinLimit(static_cast<double>(target.torque_ff_nm));
   setInput(odrive::ControlMode::kPosition,

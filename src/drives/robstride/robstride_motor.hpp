@@ -74,6 +74,7 @@ class RobStride_Motor : public SoloMotor {
 
   void followOperation(const Target& target, MonotonicTime now) noexcept;
   void followCurrent(const Target& target) noexcept;
+  void limitLoop(bool acts) noexcept;
   void followVelocity(const Target& target) noexcept;
   void followAngle(const Target& target) noexcept;
   [[nodiscard]] double clampVelocity(double rad_s) noexcept;

@@ -146,12 +146,18 @@ void RobStride_Motor::followCurrent(const Target& target) noexcept {
   setCommand(static_cast<double>(reference_.value * direction()), CommandUnit::kAmpere);
 }
 
+// A limit of 0 lets go.
+void RobStride_Motor::limitLoop(bool acts) noexcept {
+  reference_.current_limit_a = acts ? effortLimit() : 0.0F;
+  if (acts && currentAtLimit(0.0)) limits_ |= kLimitCurrent;
+}
+
 void RobStride_Motor::followVelocity(const Target& target) noexcept {
   if (target.mode == ControlMode::kVelocity) {
     reference_.value = static_cast<float>(clampVelocity(toDrive(target.value) / kRpmPerRadPerS));
   }
   const bool acts = target.mode == ControlMode::kVelocity || target.mode == ControlMode::kBrake;
-  reference_.current_limit_a = acts ? effortLimit() : 0.0F;
+  limitLoop(acts);
   setCommand(toOutput(static_cast<double>(reference_.value)) * kRpmPerRadPerS, CommandUnit::kNative);
 }
 
@@ -180,7 +186,7 @@ void RobStride_Motor::followAngle(const Target& target) noexcept {
   const double reachable = finiteOr0(std::clamp(position_rad, -kFarthestReferenceRad, kFarthestReferenceRad));
   if (reachable != position_rad) limits_ |= kLimitAngle;
   reference_.value = static_cast<float>(reachable);
-  reference_.current_limit_a = follows && !unreachable ? effortLimit() : 0.0F;
+  limitLoop(follows && !unreachable);
   setCommand(reachable == position_rad
                  ? wanted_deg
                  : feedback_.total_angle_deg + toOutput((reachable - here_rad) * kDegPerRad),

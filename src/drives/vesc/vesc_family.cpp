@@ -257,6 +257,7 @@ MotorTraits vescTraits(const VescSettings& own) {
   // Its own limits may keep the current below what it is told: that is no frozen reading.
   traits.frozen_a = 0.0F;
   traits.signed_a = own.motor_current_max_a;
+  traits.own_limit_key = "motor_current_max_a";
   traits.asked = false;
   traits.watchdog = own.ask_status;
   traits.reports_angle = own.angle != VescAngle::kNone;

@@ -75,6 +75,8 @@ struct Answer {
 
 // Status frames. 8 bytes, which the caller has checked.
 inline constexpr std::size_t kStatusLength = 8;
+/// Resolution of the reported motor current.
+inline constexpr double kAmperesPerCount = 0.1;
 
 struct Status1 {
   std::int32_t erpm = 0;

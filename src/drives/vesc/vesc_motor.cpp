@@ -150,6 +150,12 @@ void VESC_Motor::followCurrent(const Target& target) noexcept {
   setCommand(bounded, CommandUnit::kAmpere);
 }
 
+// The drive's loops know nothing of current_limit_a.
+void VESC_Motor::seeOwnLimit() noexcept {
+  if (currentAtLimit(static_cast<double>(own_.motor_current_max_a), vesc::kAmperesPerCount))
+    limits_ |= kLimitCurrent;
+}
+
 void VESC_Motor::setVelocity(double rpm) noexcept {
   if (!std::isfinite(rpm)) {
     release();
@@ -158,6 +164,7 @@ void VESC_Motor::setVelocity(double rpm) noexcept {
   const double raw_per_rpm = rotor_per_output_ * own_.pole_pairs * vesc::kPerErpm;
   const double bounded =
       rpmWithinLimit(rpm, std::numeric_limits<std::int32_t>::max() / std::abs(raw_per_rpm));
+  seeOwnLimit();
   command_ = {vesc::Packet::kSetErpm,
               vesc::toRaw(bounded * rotor_per_output_ * own_.pole_pairs, vesc::kPerErpm)};
   setCommand(bounded, CommandUnit::kNative);
@@ -168,6 +175,7 @@ void VESC_Motor::followDuty(double duty) noexcept {
     release();
     return;
   }
+  seeOwnLimit();
   const double bounded = std::clamp(duty, -1.0, 1.0);
   command_ = {vesc::Packet::kSetDuty,
               vesc::toRaw(bounded * static_cast<double>(direction()), vesc::kPerShare)};
@@ -232,6 +240,7 @@ void VESC_Motor::setPosition(double total_angle_deg) noexcept {
     release();
     return;
   }
+  seeOwnLimit();
   const double lead_deg = std::clamp(way, -kLeadDeg, kLeadDeg);
   const double next_deg = wrapDegrees(position_deg_ + lead_deg);
   command_ = {vesc::Packet::kSetPosition, vesc::toRaw(next_deg, vesc::kPerDegree)};

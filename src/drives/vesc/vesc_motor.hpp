@@ -68,6 +68,7 @@ class VESC_Motor : public SoloMotor {
   void follow(const Target& target) noexcept;
   void release() noexcept;
   void followCurrent(const Target& target) noexcept;
+  void seeOwnLimit() noexcept;
   void setVelocity(double rpm) noexcept;
   void setPosition(double total_angle_deg) noexcept;
   void followDuty(double duty) noexcept;

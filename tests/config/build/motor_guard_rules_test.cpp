@@ -74,5 +74,68 @@ TEST(MotorGuardRules, AMotorThatReportsNoTemperatureHasNoLimitOfIt) {
                   "remove it"));
 }
 
+/// Reason of the one error, without its place.
+std::string reasonOf(const std::string& motor) {
+  const auto errors = errorsOf(robotWith("{name: a, " + motor + "}"));
+  if (errors.empty()) return "";
+  EXPECT_EQ(errors.size(), 1U);
+  const std::string key = ".stall_ms: ";
+  const auto at = errors.front().find(key);
+  return at == std::string::npos ? errors.front() : errors.front().substr(at + key.size());
+}
+
+std::string unseen(const std::string& model, const std::string& remedy) {
+  return "a stall is a current at its limit, and of the " + model +
+         ", as it is configured, that is not known: " + remedy + ", or remove it";
+}
+
+TEST(MotorGuardRules, AStallIsRefusedWhereNobodySeesTheLimitOfTheCurrent) {
+  const std::string stall = ", stall_ms: 300";
+  const std::string damiao = "model: DM4310, id: 1, master_id: 17, control: ";
+  for (const std::string control : {"velocity", "position_velocity"}) {
+    EXPECT_EQ(reasonOf(damiao + control + stall),
+              unseen("DM4310",
+                     "its drive obeys a limit that no frame carries; write control: mit or "
+                     "force_position"));
+  }
+  for (const std::string control : {"mit", "force_position"})
+    EXPECT_EQ(reasonOf(damiao + control + stall), "");
+  const std::string servo = unseen("AK80-9", "set the drive to MIT and write protocol: mit (V3: mit_v3)");
+  EXPECT_EQ(reasonOf("model: AK80-9, id: 1" + stall), servo);
+  EXPECT_EQ(reasonOf("model: AK80-9, id: 1, stall_ms: 0"), servo) << "as every key that means nothing";
+  EXPECT_EQ(reasonOf("model: AK80-9, id: 1, protocol: mit" + stall), "");
+  EXPECT_EQ(reasonOf("model: AK80-9-V3, id: 1, protocol: mit_v3" + stall), "");
+  const std::string odrive =
+      "model: ODrive_v3, id: 1, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600";
+  EXPECT_EQ(reasonOf(odrive + stall), unseen("ODrive_v3", "let it send its current and write telemetry_hz"));
+  EXPECT_EQ(reasonOf(odrive + ", telemetry_hz: 20" + stall), "");
+}
+
+TEST(MotorGuardRules, TheActionOfAStallIsRefusedWithIt) {
+  EXPECT_THAT(reasonOf("model: AK80-9, id: 1, stall_action: notify"),
+              ::testing::HasSubstr("stall_action: a stall is a current at its limit"));
+}
+
+TEST(MotorGuardRules, AStallIsLongerThanTwoReportsOfTheCurrent) {
+  const std::string odrive =
+      "model: ODrive_v3, id: 1, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: "
+      "600, "
+      "telemetry_hz: 5, stall_ms: ";
+  EXPECT_EQ(reasonOf(odrive + "399"),
+            "399 ms is shorter than two reports of the current, which comes 5 times a second; write 400 or "
+            "more, or let it come more often");
+  EXPECT_EQ(reasonOf(odrive + "400"), "");
+  EXPECT_EQ(reasonOf(odrive + "0"), "");
+}
+
+TEST(MotorGuardRules, AStallOfAVescNeedsTheLimitThatIsSetInTheDrive) {
+  const std::string vesc = "model: VESC, id: 1, pole_pairs: 7";
+  EXPECT_EQ(reasonOf(vesc + ", stall_ms: 300"),
+            "needs motor_current_max_a: a stall is a current at the limit that the drive itself has; write "
+            "what is set there");
+  EXPECT_EQ(reasonOf(vesc + ", stall_ms: 0"), "");
+  EXPECT_EQ(reasonOf(vesc + ", motor_current_max_a: 40, stall_ms: 300"), "");
+}
+
 }  // namespace
 }  // namespace rc10::test::motor_guard_rules_test

@@ -9,6 +9,7 @@
 
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
+#include "daemon/supervision/one_motor.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::axis_fault_test {
@@ -126,45 +127,6 @@ TEST_F(FaultTest, AStalledMotorStopsPushing) {
   turnBoth(2000);
   EXPECT_EQ(robot->motor(kLeft).fault, FaultCode::kStalled);
   EXPECT_EQ(robot->motor(kLeft).command_value, 0.0F);
-}
-
-/// One motor with these keys on a simulated bus, ACTIVE.
-class OneMotor {
- public:
-  explicit OneMotor(const std::string& keys) {
-    const auto outcome = parseRobotConfig(
-        "robot: one\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
-        "      - {name: motor, " +
-            keys + "}\n",
-        "one.yaml");
-    EXPECT_TRUE(outcome.config) << outcome.errorText();
-    robot = std::make_unique<VirtualRobot>(outcome.config.value_or(twoWheelsAndYaw()));
-    for (int i = 0; i < 4000 && seen().status != MotorStatus::kReady; ++i) robot->run(1);
-    robot->order(Operation::kEnable);
-    EXPECT_EQ(seen().status, MotorStatus::kActive);
-  }
-  void follow(ControlMode mode, double value, int ticks) {
-    robot->hold(0, {.mode = mode, .value = value}, ticks);
-  }
-  const MotorSnapshot& seen() { return robot->motor(0); }
-
- private:
-  std::unique_ptr<VirtualRobot> robot;
-};
-
-// The limit of a loop of the drive acts in each turn of the motor, and between them.
-TEST(FaultOfADrivesLoop, AStallIsSeenWhateverTheRhythmOfItsCommands) {
-  for (const std::string model :
-       {"RMD-X8-20, id: 22, current_limit_a: 6", "RMD-X8-20, id: 22, current_limit_a: 10.399",
-        "LK-MG5010E-i10, id: 5, current_limit_a: 5"}) {
-    for (const int divider : {1, 2, 5}) {
-      SCOPED_TRACE(model + ", divider " + std::to_string(divider));
-      OneMotor motor{"model: " + model + ", stall_ms: 300, command_divider: " + std::to_string(divider) +
-                     ", simulated: {stalled: true}"};
-      motor.follow(ControlMode::kVelocity, 30.0, 2000);
-      EXPECT_EQ(motor.seen().fault, FaultCode::kStalled);
-    }
-  }
 }
 
 // Not from 0, which would brake the shaft with all its current.
