@@ -171,6 +171,29 @@ def test_mit_obeys_only_after_it_was_entered() -> None:
     assert fake.current_a == 0.0
 
 
+def test_a_law_outlives_leaving_the_mode_and_acts_again_in_it() -> None:
+    fake = drive("AK80-9:5:mit")
+    fake.decode_command(order(5, ENTER))
+    fake.decode_command(frame(0x05, "7F FF 7F F0 00 00 08 E3", extended=False))
+    fake.decode_command(order(5, EXIT))
+    ignored = frame(0x05, "7F FF 7F F0 00 00 07 FF", extended=False)  # no torque
+    fake.decode_command(ignored)
+    run(fake, 0.1)
+    assert fake.current_a == 0.0
+    fake.decode_command(order(5, ENTER))
+    run(fake, 0.1)
+    assert fake.current_a == pytest.approx(2 / (0.091 * 9), rel=0.01)
+
+
+@pytest.mark.parametrize(("rad_s", "code"), [(49.9, 0xFFA), (50.1, 0x003), (-50.1, 0xFFB)])
+def test_a_mit_speed_beyond_its_field_wraps(rad_s: float, code: int) -> None:
+    fake = drive("AK80-9:5:mit")
+    fake.speed_rad_s = rad_s
+    fake.decode_command(order(5, EXIT))
+    (message,) = fake.frames()
+    assert message.data[3] << 4 | message.data[4] >> 4 == code
+
+
 def test_mit_answers_each_frame_and_nothing_else() -> None:
     fake = drive("AK80-9:5:mit")
     assert run(fake, 0.1) == []

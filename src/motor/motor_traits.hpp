@@ -19,6 +19,7 @@ struct MotorTraits {
   float effort_full_scale = 0.0F;             ///< The largest effort that the drive can be told.
   float torque_nm_per_a = 0.0F;               ///< 0: unknown.
   float no_load_rpm = 0.0F;                   ///< At its nominal voltage; 0: unknown.
+  float reported_rpm = 0.0F;                  ///< Fastest that its feedback tells; 0: any.
   float nominal_v = 24.0F;
   float rotor_inertia_kg_m2 = 0.0F;   ///< Inertia of the rotor itself; 0: unknown.
   float phase_resistance_ohm = 0.0F;  ///< 0: unknown.

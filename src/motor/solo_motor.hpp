@@ -70,7 +70,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// The reported speed does not fit the change of the angle: for complaint() where nothing is graver.
   /// Families with MotorTraits::scaled_speed; compared while the motor obeys, until the scale is known.
   [[nodiscard]] DriveComplaint scaleComplaint() const noexcept;
-  /// Highest speed that the field has room for, at the drive: there it says nothing of the scale.
+  /// Highest speed that the field has room for, at the drive: exactly there it may be cut off, and says
+  /// nothing of the scale.
   void speedFieldEndsAt(double rad_s) noexcept { speed_field_end_rpm_ = rad_s / kRadPerSPerRpm; }
   /// From now on the speed comes from another field.
   void compareSpeedAnew() noexcept { speed_scale_.reset(); }
@@ -151,7 +152,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   std::uint64_t phase_;
   AngleReference reference_;
   SpeedScaleCheck speed_scale_;
-  double speed_field_end_rpm_ = std::numeric_limits<double>::infinity();
+  double speed_field_end_rpm_ = std::numeric_limits<double>::max();
   FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
   bool begins_ = false;
   bool led_ = false;           ///< By a fallback, in the last tick.

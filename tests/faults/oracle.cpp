@@ -407,8 +407,9 @@ void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {
     require(i, feedback.angle_deg >= 0.0F && feedback.angle_deg < 360.0F, "an angle beyond the circle");
     require(i, std::isfinite(feedback.total_angle_deg), "no reading");
     require(i, feedback.received == motor.reported_at, "another time than received");
-    const double off_rpm =
-        std::fabs(static_cast<double>(feedback.velocity_rpm) - motor.wire->measured().velocity_rpm);
+    const double apart_rpm = static_cast<double>(feedback.velocity_rpm) - motor.wire->measured().velocity_rpm;
+    const double wrap_rpm = motor.wire->measured().velocity_wrap_rpm;
+    const double off_rpm = std::fabs(wrap_rpm > 0.0 ? std::remainder(apart_rpm, wrap_rpm) : apart_rpm);
     const bool told = motor.wire->samplesAlways() || std::isfinite(feedback.velocity_rpm);
     const bool compared = told && feedback.received == motor.heard_at;
     // A shaft that a load spins up is told in float: 0.01 rpm is below its resolution then.

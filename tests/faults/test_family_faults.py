@@ -81,7 +81,7 @@ def moving(family: Family, frames: list[Frame]) -> list[Frame]:
         frame
         for frame in frames
         if re.fullmatch(family.commands, text_of(frame))
-        and not any(re.fullmatch(rest, text_of(frame)) for rest in family.rest)
+        and not any(re.fullmatch(rest, text_of(frame)) for rest in family.rest + family.before_rest)
     ]
 
 

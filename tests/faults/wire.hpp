@@ -55,6 +55,7 @@ struct Heard {
   double velocity_rpm = 0.0;
   double temperature_c = 0.0;
   double velocity_step_rpm = 0.0;  ///< Resolution of the speed.
+  double velocity_wrap_rpm = 0.0;  ///< Its field goes round after so much; 0: it does not.
 };
 
 /// A stiffness, a damping and a torque, at the drive's own output: the MIT law of five makers.

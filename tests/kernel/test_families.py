@@ -62,6 +62,7 @@ class Family:
     enabling: tuple[str, ...]  # in this order, questions and answers too
     targets: tuple[Target, ...]  # angles first, while the shaft is in its first turn
     rest: tuple[str, ...]  # the frames that are sent in every tick of rest, in this order
+    before_rest: tuple[str, ...] = ()  # sent beside them in the first, and at the end
     bus: str = ""
 
 
@@ -271,12 +272,19 @@ FAMILIES = (
         fake="AK80-9:5:mit",
         keys="model: AK80-9, id: 5, protocol: mit, zero: power_on",
         commands="005#.*",
-        enabling=("005#FFFFFFFFFFFFFFFD", "000#05.*", "005#FFFFFFFFFFFFFFFC", "000#05.*"),
+        enabling=(
+            "005#FFFFFFFFFFFFFFFD",
+            "000#05.*",
+            "005#FFFFFFFFFFFFFFFC",
+            "005#7FFF7FF0000007FF",
+            "000#05.*",
+        ),
         targets=(
             Target("angle", 90, "005#901[45]7FF0F53337FF", near=1),
             Target("velocity", 60, "005#....9000006667FF", near=3),
         ),
         rest=("005#FFFFFFFFFFFFFFFD",),
+        before_rest=("005#7FFF7FF0000007FF",),
     ),
     Family(
         name="CubeMars V3 in MIT mode",
@@ -313,7 +321,9 @@ def assert_rest(family: Family, texts: list[str]) -> None:
     """Nothing but rest, and whole rounds of it at the end."""
     assert texts
     for text in texts:
-        assert any(re.fullmatch(pattern, text) for pattern in family.rest), text
+        assert any(re.fullmatch(pattern, text) for pattern in family.rest + family.before_rest), (
+            text
+        )
     last = texts[-len(family.rest) :]
     assert all(map(re.fullmatch, family.rest, last)), last
 

@@ -108,6 +108,12 @@ class Bench {
             .damping_nms_per_rad = number(d[5] * 16U + d[6] / 16U, 0, 5, 4095),
             .torque_nm = number((d[6] & 15U) * 256U + d[7], -r.torque_nm, r.torque_nm, 4095)};
   }
+  /// To half a step of its torque.
+  [[nodiscard]] bool isNoTorque(const CanFrame& frame) const {
+    const auto law = decode(frame);
+    return law.stiffness_nm_per_rad == 0.0 && law.damping_nms_per_rad == 0.0 &&
+           std::abs(law.torque_nm) <= ranges_.torque_nm / 4095;
+  }
   /// The drive's torque for it at this position and speed.
   [[nodiscard]] double sumNm(const CanFrame& frame, double rad, double rad_s) const {
     const auto c = decode(frame);

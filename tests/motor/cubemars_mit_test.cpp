@@ -18,12 +18,28 @@ using namespace cubemars_bench;
 TEST(CubemarsMit, RestAndPollLeaveTheMode) {
   Mit bench(mit());
   std::array<CanFrame, 4> out{};
-  ASSERT_EQ(bench.motor().packRest(out), 1U);
-  EXPECT_TRUE(isExit(out[0]));
+  ASSERT_EQ(bench.motor().packRest(out), 2U);
+  EXPECT_TRUE(bench.isNoTorque(out[0]));
+  EXPECT_TRUE(isExit(out[1]));
+  ASSERT_EQ(bench.tick(FrameKind::kRest).size(), 2U) << "the law in the drive is not known yet";
   for (const auto kind : {FrameKind::kRest, FrameKind::kPoll, FrameKind::kDisable}) {
     const auto frames = bench.tick(kind);
     ASSERT_EQ(frames.size(), 1U);
     EXPECT_TRUE(isExit(frames[0]));
+  }
+}
+
+TEST(CubemarsMit, NoLawOfItsOwnIsLeftInADriveThatLeavesTheMode) {
+  for (const auto before : {FrameKind::kCommand, FrameKind::kBrake, FrameKind::kHold, FrameKind::kEnable}) {
+    Mit bench(mit());
+    (void)bench.feedMit(0.0);
+    (void)bench.tick(FrameKind::kRest);
+    (void)bench.tick(before);
+    const auto frames = bench.tick(FrameKind::kRest);
+    ASSERT_EQ(frames.size(), 2U);
+    EXPECT_TRUE(bench.isNoTorque(frames[0]));
+    EXPECT_TRUE(isExit(frames[1]));
+    EXPECT_EQ(bench.tick(FrameKind::kPoll).size(), 1U);
   }
 }
 
@@ -42,15 +58,15 @@ TEST(CubemarsMit, EntersTheModeWithoutTorqueAndIsDoneWhenTheDriveHasAnswered) {
   Mit bench(mit());
   (void)bench.feedMit(0.0);
   auto frames = bench.tick(FrameKind::kEnable);
-  ASSERT_EQ(frames.size(), 2U);
-  EXPECT_EQ(bench.decode(frames[0]).stiffness_nm_per_rad, 0.0) << "what it finds when it enters";
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_TRUE(bench.isNoTorque(frames[0])) << "in case it is in the mode";
   EXPECT_TRUE(isEnter(frames[1]));
+  EXPECT_TRUE(bench.isNoTorque(frames[2])) << "in case a law of before stands in it";
   EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kPending);
-  (void)bench.feedMit(0.0);
-  (void)bench.feedMit(0.0);
+  for (int i = 0; i < 3; ++i) (void)bench.feedMit(0.0);
   frames = bench.tick();
   EXPECT_EQ(bench.motor().sequenceProgress(), SequenceProgress::kPending)
-      << "one of the two may be the answer to an older frame";
+      << "one of the three may be the answer to an older frame";
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(bench.decode(frames[0]).stiffness_nm_per_rad, 0.0);
   (void)bench.feedMit(0.0);
@@ -90,10 +106,11 @@ TEST(CubemarsMit, ClearingEntersWithoutTorqueAndLeavesAgain) {
   (void)bench.tick(FrameKind::kPoll);
   bench.motor().clearComplaint();
   const auto frames = bench.tick();
-  ASSERT_EQ(frames.size(), 3U);
-  EXPECT_EQ(bench.decode(frames[0]).stiffness_nm_per_rad, 0.0);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_TRUE(bench.isNoTorque(frames[0]));
   EXPECT_TRUE(isEnter(frames[1]));
-  EXPECT_TRUE(isExit(frames[2]));
+  EXPECT_TRUE(bench.isNoTorque(frames[2]));
+  EXPECT_TRUE(isExit(frames[3]));
   EXPECT_TRUE(isExit(bench.tick().front())) << "once only";
 }
 
@@ -200,6 +217,40 @@ TEST(CubemarsMit, CountsTheTurnsOfItsPositionField) {
   }
   EXPECT_NEAR(bench.motor().feedback().total_angle_deg, -40.0 * 180.0 / kPi, 0.1);
   EXPECT_EQ(bench.motor().feedback().jumps, 0U);
+}
+
+TEST(CubemarsMit, AShaftFasterThanItsFieldIsReadWithItsSignAndSize) {
+  for (const double sign : {1.0, -1.0}) {
+    Mit bench(mit());
+    double rad = 0.0;
+    (void)bench.feedMit(0.0);
+    (void)bench.command({.mode = ControlMode::kCurrent});
+    for (double rad_s = 0.0; rad_s < 80.0; rad_s += 0.1) {
+      rad += sign * rad_s * 1e-3;
+      (void)bench.feedMit(std::remainder(rad, 25.0), sign * rad_s);
+      ASSERT_NEAR(bench.motor().feedback().velocity_rpm, sign * rad_s * 30.0 / kPi, 0.3);
+      ASSERT_EQ(bench.motor().complaint().fault, FaultCode::kNone) << rad_s;
+    }
+    EXPECT_EQ(bench.motor().feedback().jumps, 0U);
+  }
+}
+
+// The damping that the drive computes from its own speed is bounded by that speed.
+TEST(CubemarsMit, AShaftFasterThanItsFieldIsBrakedWithinTheLimit) {
+  auto settings = mit();
+  settings.effort_limit = 4.0F;
+  for (const double sign : {1.0, -1.0}) {
+    Mit bench(settings);
+    double rad = 0.0;
+    (void)bench.feedMit(0.0);
+    for (double rad_s = 0.0; rad_s < 70.0; rad_s += 0.1) {
+      rad += sign * rad_s * 1e-3;
+      (void)bench.feedMit(std::remainder(rad, 25.0), sign * rad_s);
+      const auto frame = bench.command({.mode = ControlMode::kBrake});
+      ASSERT_LE(sign * bench.sumNm(frame, 0.0, sign * rad_s), 0.1) << rad_s;
+      ASSERT_GE(sign * bench.sumNm(frame, 0.0, sign * rad_s), -4.0 * 9 * 0.091 - 0.2) << rad_s;
+    }
+  }
 }
 
 TEST(CubemarsMit, OutsideOfTheFieldAnAngleOnlyDamps) {

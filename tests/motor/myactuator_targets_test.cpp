@@ -139,10 +139,33 @@ TEST_F(MyActuatorMotor, ATargetBeyondItsRangeOfAnglesOnlyDamps) {
   EXPECT_EQ(motor_.commandValue(), 0.0F);
 }
 
-TEST_F(MyActuatorMotor, TheTorqueIsBoundedByTheAngleOfItsMotionAnswers) {
+MotorSettings ofOneAmpere() {
   auto settings = settingsOf();
   settings.effort_limit = 1.0F;  // 3.125 N·m
-  MyActuator_Motor motor = motorOf(settings);
+  return settings;
+}
+
+class MyActuatorOfOneAmpere : public MyActuatorMotor {
+ protected:
+  MyActuatorOfOneAmpere() : MyActuatorMotor(ofOneAmpere()) {}
+};
+
+// Field of the speed in motion answers: cut off at 45 rad/s.
+TEST_F(MyActuatorOfOneAmpere, AShaftFasterThanItsMotionFieldIsDampedWithinTheLimit) {
+  comeOnline(0);
+  const auto fast = frameOf("501#017FFFFFF8000000");
+  double damping = 0.0;
+  for (int i = 1; i < 60; ++i) {
+    hear(fast);
+    hear(angleReply(static_cast<std::int32_t>(std::lround(i * 60e-3 * kDegPerRad * 100.0))));  // 60 rad/s
+    const auto text = told({.mode = ControlMode::kImpedance, .damping_nms_per_rad = 2.0F});
+    damping = std::stoi(text.substr(4 + 10, 3), nullptr, 16) * 5.0 / 4095.0;
+  }
+  EXPECT_LE(60.0 * damping, 3.125 * 1.03);
+}
+
+TEST_F(MyActuatorMotor, TheTorqueIsBoundedByTheAngleOfItsMotionAnswers) {
+  MyActuator_Motor motor = motorOf(ofOneAmpere());
   for (CanFrame frame : {uptimeReply(1000), angleReply(1)}) {
     frame.received = now_;
     (void)motor.updateFeedback(frame);

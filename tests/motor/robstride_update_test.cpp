@@ -105,6 +105,28 @@ TEST(RobStrideMotor, ATargetThatItsFieldCannotSayDoesNotPassTheLimit) {
   }
 }
 
+// The field of its speed is cut off at 33 rad/s: damping by the drive's own speed is more than by that.
+TEST(RobStrideMotor, AShaftFasterThanItsSpeedFieldIsDampedWithinTheLimit) {
+  auto settings = controlled("operation");
+  settings.effort_limit = 4.0F;
+  for (const double rad_s : {45.0, -45.0}) {
+    Bench bench(settings);
+    const double limit_nm = 4.0 * bench.codec.model->torqueNmPerA();
+    double rad = 0.0;
+    for (const auto mode : {ControlMode::kVelocity, ControlMode::kBrake, ControlMode::kImpedance}) {
+      SpringLaw told;
+      for (int i = 0; i < 50; ++i) {
+        rad += rad_s * 1e-3;
+        bench.run(std::remainder(rad, 4.0 * kRadPerTurn), rad_s);
+        told = bench.operation({.mode = mode, .damping_nms_per_rad = 3.0F});
+      }
+      const double nm = torqueOf(told, 0.0, rad_s);
+      EXPECT_LE(std::abs(nm), 1.02 * limit_nm) << static_cast<int>(mode);
+      EXPECT_LT(nm * rad_s, 0.0);
+    }
+  }
+}
+
 TEST(RobStrideMotor, DeratingScalesTheTorque) {
   Bench bench(robStrideSettings("RS00"));
   bench.motor.derate(0.25F);

@@ -1,4 +1,5 @@
 // AK motors and their simulated drives, frame by frame in virtual time.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -70,6 +71,42 @@ TEST(CubemarsScale, AMitDriveOnAnotherSpeedScaleIsStoppedAtItsFirstMotion) {
     EXPECT_EQ(complaint.fault, right ? FaultCode::kNone : FaultCode::kDriveSetting);
     if (!right) {
       EXPECT_NEAR(static_cast<double>(complaint.native_code - SoloMotor::kSpeedScaleComplaint), 66.0, 2.0);
+    }
+  }
+}
+
+// A load drives the shaft faster than the field of its speed, and a brake ends that.
+TEST(CubemarsScale, AShaftFasterThanItsSpeedFieldIsReadAndBrakedInTheRightDirection) {
+  for (const auto& model : cubemarsModels()) {
+    if (model.v3) continue;
+    for (const float sign : {1.0F, -1.0F}) {
+      SCOPED_TRACE(std::string{model.name});
+      auto rig = rigOf(settingsOf({model.name.data(), "mit"}));
+      rig.comeOnline();
+      ASSERT_TRUE(rig.enable());
+      rig.command({.mode = ControlMode::kCurrent});
+      sim::MotorLoad load;
+      load.load_torque_nm = -3.0F * sign * static_cast<float>(model.ranges.torque_nm);
+      // A second to the no-load speed: the drive's own filter lags little.
+      load.inertia_kg_m2 =
+          std::abs(load.load_torque_nm) / (model.no_load_rpm * static_cast<float>(kRadPerSPerRpm));
+      rig.drive().setLoad(load);
+      const double most_rpm = 1.6 * static_cast<double>(model.no_load_rpm);
+      const auto right = [&] {
+        const double rpm = rig.drive().physics().outputRpm();
+        EXPECT_NEAR(rig.motor().feedback().velocity_rpm, rpm, 3.0 + 0.01 * std::abs(rpm));
+        EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+      };
+      for (int i = 0; i < 3000 && std::abs(rig.drive().physics().outputRpm()) < most_rpm; ++i)
+        rig.run(milliseconds{1}, right);
+      ASSERT_GE(static_cast<double>(sign) * rig.drive().physics().outputRpm(), most_rpm);
+      rig.drive().setLoad({});
+      rig.motor().order(FrameKind::kBrake);
+      rig.run(seconds{2});
+      EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+      EXPECT_NEAR(rig.drive().physics().outputRpm(), 0.0, 2.0);
+      EXPECT_EQ(rig.motor().feedback().jumps, 0U);
+      EXPECT_TRUE(rig.motor().feedback().zeroed);
     }
   }
 }
@@ -362,6 +399,63 @@ TEST(CubemarsLoops, AMotorThatIsEnabledAnewDoesNotGoOnToItsOldTarget) {
   rig.motor().order(FrameKind::kIdle);
   rig.run(milliseconds{500});
   EXPECT_NEAR(rig.drive().physics().outputAngleDeg(), before, 0.1);
+}
+
+class LawOfAnotherProgram : public ::testing::Test {
+ protected:
+  /// Ended without a rest: 6 N·m, then out of the mode.
+  void SetUp() override {
+    sim::MotorLoad load;
+    load.stalled = true;
+    rig_.drive().setLoad(load);
+    const CubemarsRanges ranges = findCubemarsModel("AK80-9")->ranges;
+    rig_.drive().receive(cubemars::mitOrderFrame(12, cubemars::MitOrder::kEnter));
+    rig_.drive().receive(cubemars::mitFrame(12, ranges, {.torque_nm = 6.0}));
+    rig_.drive().receive(cubemars::mitOrderFrame(12, cubemars::MitOrder::kExit));
+    rig_.drive().step(milliseconds{20});
+    EXPECT_NEAR(rig_.currentA(), 0.0, 0.02);
+  }
+  void run(Duration duration) {
+    rig_.run(duration, [this] { most_a_ = std::max(most_a_, rig_.currentA()); });
+  }
+
+  SoloRig rig_ = rigOf(settingsOf({"AK80-9", "mit"}));
+  double most_a_ = 0.0;
+};
+
+TEST_F(LawOfAnotherProgram, ActsAgainInADriveThatIsOnlyToldToEnter) {
+  rig_.drive().receive(cubemars::mitFrame(12, findCubemarsModel("AK80-9")->ranges, {}));
+  rig_.drive().receive(cubemars::mitOrderFrame(12, cubemars::MitOrder::kEnter));
+  rig_.drive().step(milliseconds{20});
+  EXPECT_GT(rig_.currentA(), 5.0) << "outside of the mode no law is taken in";
+}
+
+TEST_F(LawOfAnotherProgram, GivesNoTorqueWhenItIsEnabledOrCleared) {
+  rig_.motor().order(FrameKind::kPoll);
+  run(milliseconds{100});
+  rig_.motor().clearComplaint();
+  run(milliseconds{100});
+  rig_.motor().order(FrameKind::kEnable);
+  for (int i = 0; i < 100; ++i) run(milliseconds{1});
+  ASSERT_EQ(rig_.motor().sequenceProgress(), SequenceProgress::kDone);
+  rig_.motor().order(FrameKind::kIdle);
+  run(milliseconds{100});
+  EXPECT_LT(most_a_, 0.05);
+  rig_.command({.mode = ControlMode::kCurrent, .value = 4.0});
+  run(milliseconds{100});
+  EXPECT_NEAR(rig_.currentA(), 4.0, 0.2);
+}
+
+TEST_F(LawOfAnotherProgram, IsNotLeftBehindByARest) {
+  rig_.comeOnline();
+  ASSERT_TRUE(rig_.enable());
+  rig_.command({.mode = ControlMode::kCurrent, .value = 4.0});
+  run(milliseconds{50});
+  rig_.motor().order(FrameKind::kRest);
+  run(milliseconds{50});
+  rig_.drive().receive(cubemars::mitOrderFrame(12, cubemars::MitOrder::kEnter));
+  rig_.drive().step(milliseconds{20});
+  EXPECT_NEAR(rig_.currentA(), 0.0, 0.05);
 }
 
 TEST(CubemarsLoops, MoreTurnsThanItsPositionFieldAreCounted) {

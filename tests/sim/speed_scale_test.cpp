@@ -160,7 +160,8 @@ TEST_P(SpeedScale, TheThresholdIsTheUsersAndZeroIsNone) {
 INSTANTIATE_TEST_SUITE_P(Families, SpeedScale, testing::ValuesIn(kSubjects),
                          [](const auto& each) { return std::string{each.param.name}; });
 
-// That of a Damiao goes round at its ends: see DamiaoSpeed.
+// That of a Damiao goes round at its ends (WrappedSpeed), and so does that of a CubeMars, unless a firmware
+// cuts it off.
 INSTANTIATE_TEST_SUITE_P(Families, EndOfASpeedField,
                          testing::Values(kSubjects[2], kSubjects[3], kSubjects[4]),
                          [](const auto& each) { return std::string{each.param.name}; });

@@ -12,6 +12,7 @@ namespace {
 
 // Shares of the no-load speed at 24 V: above what the drive alone can reach; below a turning motor's noise.
 constexpr double kOverspeed = 1.5;
+constexpr double kLeastOverspeed = 1.1;  // a full battery
 constexpr double kStall = 0.02;
 // Against all its torque: more than a load or another robot that pushes adds.
 constexpr double kRunaway = 0.1;
@@ -29,9 +30,18 @@ constexpr Duration kRestTime = std::chrono::milliseconds{100};
 constexpr int kFastCurrentHz = 50;
 constexpr int kReportsOfStall = 2;
 
-// A limit that trips on what is asked for would be of no use.
+// None where the feedback ends below what the motor may turn at.
+float defaultOverspeedRpm(const MotorParse& in) {
+  const double rpm = std::min(kOverspeed * in.noLoadRpm(), in.highestThresholdRpm());
+  return rpm > kLeastOverspeed * in.noLoadRpm() ? static_cast<float>(rpm) : 0.0F;
+}
+
+// A limit that trips on what is asked for would be of no use, nor one that no feedback reaches.
 void checkOverspeed(MotorParse& in) {
   const auto given = in.settings.find("overspeed_rpm");
+  if (given)
+    in.refuseUnseen(*given, static_cast<double>(in.draft.config.guard.overspeed_rpm),
+                    in.highestThresholdRpm());
   const float target_rpm = in.motor().velocity_limit_rpm;
   if (!given || in.draft.config.guard.overspeed_rpm > target_rpm) return;
   in.problems.error(given->place(), given->path,
@@ -104,7 +114,7 @@ void readRest(MotorParse& in) {
 
 void readGuard(MotorParse& in) {
   GuardConfig& guard = in.draft.config.guard;
-  guard.overspeed_rpm = static_cast<float>(kOverspeed * in.noLoadRpm());
+  guard.overspeed_rpm = defaultOverspeedRpm(in);
   guard.stall_rpm = static_cast<float>(kStall * in.noLoadRpm());
   in.settings.read("overspeed_rpm", guard.overspeed_rpm);
   if (in.traits.reports_temperature) {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
 
 #include "config/check/motor_draft.hpp"
 #include "config/keys/settings.hpp"
+#include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
 #include "motor/motor_family.hpp"
 
@@ -32,10 +34,24 @@ struct MotorParse {
     if (traits.no_load_rpm <= 0.0F) return static_cast<double>(motor().velocity_limit_rpm);
     return static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear();
   }
+  /// The highest speed that a threshold can lie at: less noise below the end of what is reported. Infinite
+  /// where any speed is.
+  [[nodiscard]] double highestThresholdRpm() const noexcept {
+    constexpr double kBelowEnd = 0.98;
+    if (!(traits.reported_rpm > 0.0F)) return std::numeric_limits<double>::infinity();
+    return kBelowEnd * static_cast<double>(traits.reported_rpm) * traits.gear_ratio / gear();
+  }
   [[nodiscard]] double torqueNmPerA() const noexcept {
     return static_cast<double>(traits.torque_nm_per_a) / traits.gear_ratio * gear();
   }
 
+  /// Refuses a speed beyond which no feedback would tell that it is exceeded.
+  void refuseUnseen(const GivenValue& given, double rpm, double most_rpm) {
+    if (rpm <= most_rpm) return;
+    problems.error(given.place(), given.path,
+                   given.text() + " rpm is never seen to be exceeded: the speed that the " + modelName() +
+                       " reports ends too early; use at most " + numberText(std::floor(most_rpm)) + " rpm");
+  }
   /// Refuses a section whose upper angle is not above its lower one; one that is not given is not checked.
   void refuseUnordered(const Settings& section, std::string_view min_key, std::string_view max_key) {
     float min_deg = std::numeric_limits<float>::quiet_NaN();

@@ -31,6 +31,9 @@ void readVelocity(MotorParse& in) {
   refuseWithoutBrake(in, "reduced_velocity_rpm");
   reduced.full_rpm = fullRpm(in);
   reduced.tolerance_rpm = kTolerance * reduced.velocity_rpm + in.draft.config.standstill_rpm;
+  const double most_rpm = (in.highestThresholdRpm() - static_cast<double>(in.draft.config.standstill_rpm)) /
+                          (1.0 + static_cast<double>(kTolerance));
+  in.refuseUnseen(*given, static_cast<double>(reduced.velocity_rpm), most_rpm);
   in.settings.read("velocity_slew_rpm_per_s", reduced.slew_rpm_per_s);
   if (const auto within_ms = in.settings.number("reduced_within_ms"))
     reduced.within = std::chrono::milliseconds{static_cast<int>(*within_ms)};

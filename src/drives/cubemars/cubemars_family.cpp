@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/units.hpp"
 #include "drives/cubemars/cubemars_frames.hpp"
 #include "drives/cubemars/cubemars_mit.hpp"
 #include "drives/cubemars/cubemars_servo.hpp"
@@ -221,6 +222,9 @@ MotorTraits cubemarsTraits(const CubemarsSettings& own) {
   traits.effort_full_scale = std::min(full_nm / own.torque_nm_per_a, kLargestServoA);
   traits.torque_nm_per_a = own.torque_nm_per_a;
   traits.no_load_rpm = model.no_load_rpm;
+  traits.reported_rpm = static_cast<float>(
+      mit ? std::max(own.ranges.velocity_rad_s / kRadPerSPerRpm, cubemarsFastestRpm(model))
+          : cubemars::kLargestReportedErpm / (model.gear_ratio * std::max(own.pole_pairs, 1)));
   traits.nominal_v = model.nominal_v;
   traits.phase_resistance_ohm = model.phase_resistance_ohm;
   traits.absolute = own.output_encoder;

@@ -24,7 +24,8 @@ enum class ServoCommand : std::uint32_t {
   kMit = 8,
 };
 inline constexpr std::uint32_t kServoFeedback = 0x29;
-inline constexpr double kLargestErpm = 100'000.0;  ///< Range of the velocity command by the manual.
+inline constexpr double kLargestReportedErpm = 327'670.0;  ///< 16 bits of 10 ERPM.
+inline constexpr double kLargestErpm = 100'000.0;          ///< Range of the velocity command by the manual.
 
 [[nodiscard]] constexpr CanId servoId(ServoCommand command, int motor_id) noexcept {
   return {static_cast<std::uint32_t>(command) << 8U | static_cast<std::uint32_t>(motor_id), true};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "app/units.hpp"
 #include "motor/frame_outbox.hpp"
@@ -17,8 +18,8 @@ constexpr double kMostAmperes = 1e6;  // of a target: no sum overflows
 
 constexpr Duration kMitStepPatience = std::chrono::milliseconds{50};
 constexpr int kMitAttempts = 6;  // the first, and five more
-// The answers to "no torque" and "enter", and one that was under way before them.
-constexpr std::uint64_t kAnswersToEnter = 3;
+// The answers to "no torque", "enter" and "no torque", and one that was under way before them.
+constexpr std::uint64_t kAnswersToEnter = 4;
 constexpr double kMitDampShare = 0.25;  // of the damping of brake
 // Share of the torque of a spring one turn of the field away (at most the whole range) that counts as a pull
 // the other way: delay and resolution of the report hide the rest.
@@ -38,9 +39,12 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& 
       angle_stiffness_(settings.own.number("angle_stiffness_nm_per_rad")),
       angle_damping_(settings.own.number("angle_damping_nms_per_rad")),
       velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
+      speed_(own.ranges.velocity_rad_s,
+             std::max(own.ranges.velocity_rad_s, cubemarsFastestRpm(*own.model) * kRadPerSPerRpm)),
       travel_(settings.travel),
       enabling_(kMitStepPatience, kMitAttempts) {
   const auto id = static_cast<std::uint8_t>(settings.id);
+  // In case a firmware cuts off what does not fit, unlike the Mini Cheetah's.
   if (!v3_) speedFieldEndsAt(own.ranges.velocity_rad_s);
   if (v3_) {
     filters_.fill(FrameFilter{.id = cubemars::servoFeedbackId(settings.id)});
@@ -90,13 +94,15 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   const auto report = cubemars::readMitReport(frame, own().ranges);
   if (!report) return FrameVerdict::kMalformed;
   const bool anew = feedback_.samples == 0 || noticeRestart(frame.received);
-  velocity_rad_s_ = report->velocity_rad_s;
+  const double drive_rad = unwrapped(report->position_rad, anew);
+  const bool follows = !anew && reaches(frame.received, drive_rad / kRadPerDeg);
+  velocity_rad_s_ = speed_.take(report->velocity_rad_s, drive_rad, follows, frame.received);
+  feedback_.velocity_rpm = static_cast<float>(toOutput(velocity_rad_s_ / kRadPerSPerRpm));
   watchSpring(*report);
-  takePosition(frame.received, unwrapped(report->position_rad, anew) / kRadPerDeg);
+  takePosition(frame.received, drive_rad / kRadPerDeg);
   samples_at_end_ = report->at_end ? std::min(samples_at_end_ + 1, kSamplesAtEnd) : 0;
   feedback_.angle_at_end = samples_at_end_ == kSamplesAtEnd;
   if (feedback_.angle_at_end) loseReference();
-  feedback_.velocity_rpm = static_cast<float>(toOutput(velocity_rad_s_ / kRadPerSPerRpm));
   feedback_.torque_nm = static_cast<float>(torqueToOutput(report->torque_nm));
   feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   if (report->temperature_c) feedback_.temperature_c = static_cast<float>(*report->temperature_c);
@@ -129,7 +135,7 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   // A report between two frames may still show the law of the one before.
   std::array<double, 2> expected_nm{};
   for (std::size_t i = 0; i < sent_.size(); ++i) {
-    const double sum_nm = torqueNm(sent_[i], {report.position_rad, report.velocity_rad_s});
+    const double sum_nm = torqueNm(sent_[i], measured());
     expected_nm[i] = std::clamp(sum_nm, -most_nm, most_nm);
   }
   const double stiffness = sent_[0].stiffness_nm_per_rad;
@@ -292,32 +298,36 @@ CanFrame CubemarsMit::commandFrame(const SpringLaw& law) const noexcept {
 
 std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (out.size() < kMaxFramesPerPacker) return 0;
-  const CanFrame no_torque = commandFrame({});
-  if (clear_now_ || enter_now_) {
-    // A drive that remembers its last command from before must not find it when it enters.
-    out[0] = no_torque;
-    out[1] = cubemars::mitOrderFrame(driveId(), MitOrder::kEnter);
-    out[2] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);
-    const bool leaves = clear_now_ && !enter_now_;
-    clear_now_ = false;
-    return leaves ? 3 : 2;
-  }
+  if (clear_now_ || enter_now_) return packEnter(out);
   if (!due(tick)) return 0;
-  if (!enabling() && !obeying()) return packRest(out);
-  out[0] = enabling() ? no_torque : commandFrame(command_);
+  if (!enabling() && !obeying()) {
+    if (v3_ || !std::exchange(at_rest_, true)) return packRest(out);
+    out[0] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);  // the drive answers this one too
+    return 1;
+  }
+  at_rest_ = false;
+  out[0] = commandFrame(enabling() ? SpringLaw{} : command_);
   sent_ = {enabling() ? SpringLaw{} : command_, sent_[0]};
   return 1;
 }
 
+std::size_t CubemarsMit::packEnter(std::span<CanFrame> out) noexcept {
+  FrameOutbox frames;
+  frames.add(commandFrame({}));
+  frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kEnter));
+  frames.add(commandFrame({}));
+  at_rest_ = clear_now_ && !enter_now_;
+  if (at_rest_) frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kExit));
+  clear_now_ = false;
+  return frames.copyTo(out);
+}
+
 std::size_t CubemarsMit::packRest(std::span<CanFrame> out) const noexcept {
   FrameOutbox frames;
-  if (!v3_) {
-    frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kExit));  // the drive answers this one too
-  } else {
-    // "No torque" of a MIT command is half a step of its field; the current of 0 that follows is exact.
-    frames.add(commandFrame({}));
-    frames.add(cubemars::currentFrame(driveId(), 0.0));
-  }
+  // "No torque" of a MIT command is half a step of its field; the current of 0 that follows is exact.
+  frames.add(commandFrame({}));
+  frames.add(v3_ ? cubemars::currentFrame(driveId(), 0.0)
+                 : cubemars::mitOrderFrame(driveId(), MitOrder::kExit));
   return frames.copyTo(out);
 }
 

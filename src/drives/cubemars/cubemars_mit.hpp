@@ -6,12 +6,16 @@
 #include "motor/enable_sequence.hpp"
 #include "motor/lead_bound.hpp"
 #include "motor/position_reach.hpp"
+#include "motor/wrapped_speed.hpp"
 
 namespace rc10 {
 
 /// An AK drive in MIT mode: torque = stiffness * (position error) + damping * (velocity error) + torque, all
 /// in the drive. V1 and V2 obey after they were told to enter that mode and answer each frame; V3 obey
 /// always and speak unasked.
+///
+/// The last law may stay in a drive that leaves the mode, and act again when it enters; outside of it a drive
+/// ignores laws. So "no torque" goes before leaving and behind entering.
 ///
 /// effortLimit() bounds the sum that the drive will make of a command, as far as the last feedback tells;
 /// without feedback for longestGap() nothing but "no torque" is sent. Scheduler thread only.
@@ -54,6 +58,7 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] SpringLaw approachLaw(const Target& target, MonotonicTime now) noexcept;
   void send(const SpringLaw& wanted_law) noexcept;
   void release() noexcept;
+  [[nodiscard]] std::size_t packEnter(std::span<CanFrame> out) noexcept;
   [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
   [[nodiscard]] double driveRadS(double output_rpm) const noexcept;
   [[nodiscard]] double limitRadS() const noexcept;  ///< 0: none.
@@ -70,6 +75,7 @@ class CubemarsMit : public CubeMars_Motor {
   // The last feedback, in the drive's own terms.
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;
+  WrappedSpeed speed_;
   int turns_ = 0;               ///< Wraps of the position field; 0: within its range.
   bool turns_unknown_ = false;  ///< Silent while outside of its range, and maybe restarted.
   int samples_at_end_ = 0;
@@ -83,6 +89,7 @@ class CubemarsMit : public CubeMars_Motor {
   EnableSequence<Step> enabling_;
   bool enter_now_ = false;
   bool clear_now_ = false;
+  bool at_rest_ = false;              ///< The law in the drive is "no torque", and it has left the mode.
   std::uint64_t samples_before_ = 0;  ///< Count when it was first told to enter the mode.
 };
 

@@ -143,6 +143,11 @@ CubemarsSettings cubemarsSettings(std::string_view model_name, const OwnValues& 
   return settings;
 }
 
+double cubemarsFastestRpm(const CubemarsModel& model) noexcept {
+  constexpr double kReach = 1.7;
+  return kReach * static_cast<double>(model.no_load_rpm);
+}
+
 std::span<const DriveFault> cubemarsFaults() noexcept { return kCubemarsFaults; }
 
 FaultCode cubemarsFault(std::uint8_t code) noexcept {

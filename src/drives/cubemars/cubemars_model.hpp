@@ -58,6 +58,10 @@ struct CubemarsSettings {
 /// `model` is one of cubemarsModels(), `own` has all of the family's keys.
 [[nodiscard]] CubemarsSettings cubemarsSettings(std::string_view model, const OwnValues& own);
 
+/// Fastest speed of the drive's own output: above the no-load speed for a load that drives, a full battery,
+/// another winding of the same name. More than the default of overspeed_rpm.
+[[nodiscard]] double cubemarsFastestRpm(const CubemarsModel& model) noexcept;
+
 /// Native error codes. The words are those of docs/motors/cubemars.md.
 [[nodiscard]] std::span<const DriveFault> cubemarsFaults() noexcept;
 /// kNone for 0, kDriveOther for a code that the table does not have.

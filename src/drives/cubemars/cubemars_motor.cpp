@@ -14,8 +14,6 @@ namespace {
 // No start-up time is published. Its boot loader and the encoder's start take longer than this.
 constexpr Duration kStartUp = std::chrono::milliseconds{100};
 constexpr int kCubemarsGapPeriods = 3;  // feedback periods that are no gap
-// Above the no-load speed: a load that drives, a full battery, another winding of the same name.
-constexpr double kReach = 1.5;
 constexpr double kPositionErrorDeg = 1.0;
 
 }  // namespace
@@ -25,7 +23,7 @@ CubeMars_Motor::CubeMars_Motor(const MotorSettings& settings, const CubemarsSett
       own_(own),
       id_(settings.id),
       longest_gap_(std::max(kStartUp, kCubemarsGapPeriods * feedbackPeriod())),
-      reach_deg_per_s_(kReach * static_cast<double>(own.model->no_load_rpm) * kDegPerSPerRpm) {}
+      reach_deg_per_s_(cubemarsFastestRpm(*own.model) * kDegPerSPerRpm) {}
 
 // ---- Feedback
 
@@ -36,14 +34,17 @@ bool CubeMars_Motor::noticeRestart(MonotonicTime received) noexcept {
   return true;
 }
 
+bool CubeMars_Motor::reaches(MonotonicTime received, double drive_deg) const noexcept {
+  if (feedback_.samples == 0) return true;
+  const Duration apart = longestApart(received - feedback_.received, feedbackPeriod());
+  const double reach_deg = reach_deg_per_s_ * static_cast<double>(seconds(apart)) + kPositionErrorDeg;
+  return std::fabs(drive_deg - last_drive_deg_) <= reach_deg;
+}
+
 void CubeMars_Motor::takePosition(MonotonicTime received, double drive_deg) noexcept {
-  if (feedback_.samples > 0) {
-    const Duration apart = longestApart(received - feedback_.received, feedbackPeriod());
-    const double reach_deg = reach_deg_per_s_ * static_cast<double>(seconds(apart)) + kPositionErrorDeg;
-    if (std::fabs(drive_deg - last_drive_deg_) > reach_deg) {
-      ++feedback_.jumps;
-      loseReference();
-    }
+  if (!reaches(received, drive_deg)) {
+    ++feedback_.jumps;
+    loseReference();
   }
   last_drive_deg_ = drive_deg;
   acceptSample(received, drive_deg);

@@ -30,6 +30,8 @@ class CubeMars_Motor : public SoloMotor {
   /// Forgets the reference and notes the stop if the drive must have been restarted since the last sample.
   /// True: it must.
   bool noticeRestart(MonotonicTime received) noexcept;
+  /// The drive can have turned to this position (deg of its own output) since the last sample.
+  [[nodiscard]] bool reaches(MonotonicTime received, double drive_deg) const noexcept;
   /// Accepts a position (deg of the drive's own output) unless the drive cannot have turned so far:
   /// then it is a jump as well.
   void takePosition(MonotonicTime received, double drive_deg) noexcept;

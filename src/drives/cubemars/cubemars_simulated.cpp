@@ -9,6 +9,7 @@
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "drives/cubemars/cubemars_family.hpp"
+#include "sim/wrapped_code.hpp"
 
 namespace rc10::sim {
 namespace {
@@ -28,11 +29,6 @@ std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const Cube
 
 double scaled(std::uint32_t code, double low, double high, double last_code) noexcept {
   return low + (high - low) * code / last_code;
-}
-
-std::uint32_t coded(double value, double reach, double last_code) noexcept {
-  return static_cast<std::uint32_t>(
-      std::lround(std::clamp((value + reach) / (2.0 * reach), 0.0, 1.0) * last_code));
 }
 
 std::int16_t int16Of(double value, double limit) noexcept {
@@ -99,7 +95,7 @@ void CubemarsDrive::receiveServo(const CanFrame& frame) noexcept {
     case 5: zeroAt(0.0); break;
     case 6: setDrivePosition(value / 1e4, rpmOf(10.0 * readBigEndian<std::int16_t>(bytes, 4))); break;
     case 8:
-      obeyMit(readBigEndian<std::uint16_t>(bytes, 3),
+      takeLaw(readBigEndian<std::uint16_t>(bytes, 3),
               static_cast<std::uint32_t>(bytes[5] << 4 | bytes[6] >> 4),
               static_cast<std::uint32_t>(bytes[0] << 4 | bytes[1] >> 4),
               static_cast<std::uint32_t>((bytes[1] & 0xF) << 8 | bytes[2]),
@@ -119,13 +115,14 @@ void CubemarsDrive::receiveMit(const CanFrame& frame) noexcept {
   if (special && bytes[7] == 0xFC) {
     entered_ = true;
     error_ = 0;
+    followLaw();
   } else if (special && bytes[7] == 0xFD) {
     entered_ = false;
     release();
   } else if (special && bytes[7] == 0xFE) {
     zeroAt(0.0);
   } else if (entered_ && error_ == 0) {
-    obeyMit(readBigEndian<std::uint16_t>(bytes, 0), static_cast<std::uint32_t>(bytes[2] << 4 | bytes[3] >> 4),
+    takeLaw(readBigEndian<std::uint16_t>(bytes, 0), static_cast<std::uint32_t>(bytes[2] << 4 | bytes[3] >> 4),
             static_cast<std::uint32_t>((bytes[3] & 0xF) << 8 | bytes[4]),
             static_cast<std::uint32_t>(bytes[5] << 4 | bytes[6] >> 4),
             static_cast<std::uint32_t>((bytes[6] & 0xF) << 8 | bytes[7]));
@@ -133,15 +130,23 @@ void CubemarsDrive::receiveMit(const CanFrame& frame) noexcept {
   answer(mitReply());
 }
 
-void CubemarsDrive::obeyMit(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness,
+void CubemarsDrive::takeLaw(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness,
                             std::uint32_t damping, std::uint32_t torque) noexcept {
   const auto& r = own_.ranges;
   const auto both = [](std::uint32_t code, double reach, double last) {
     return scaled(code, -reach, reach, last);
   };
-  impedance(both(position, r.position_rad, 65535.0) / kRadPerDeg,
-            both(velocity, r.velocity_rad_s, 4095.0) / kRadPerSPerRpm, scaled(stiffness, 0.0, 500.0, 4095.0),
-            scaled(damping, 0.0, 5.0, 4095.0), both(torque, r.torque_nm, 4095.0));
+  law_ = {.position_rad = both(position, r.position_rad, 65535.0),
+          .velocity_rad_s = both(velocity, r.velocity_rad_s, 4095.0),
+          .stiffness_nm_per_rad = scaled(stiffness, 0.0, 500.0, 4095.0),
+          .damping_nms_per_rad = scaled(damping, 0.0, 5.0, 4095.0),
+          .torque_nm = both(torque, r.torque_nm, 4095.0)};
+  followLaw();
+}
+
+void CubemarsDrive::followLaw() noexcept {
+  impedance(law_.position_rad / kRadPerDeg, law_.velocity_rad_s / kRadPerSPerRpm, law_.stiffness_nm_per_rad,
+            law_.damping_nms_per_rad, law_.torque_nm);
 }
 
 void CubemarsDrive::step(Duration dt) noexcept {
@@ -153,6 +158,7 @@ void CubemarsDrive::step(Duration dt) noexcept {
 
 void CubemarsDrive::restart() noexcept {
   release();
+  law_ = {};
   entered_ = false;
   error_ = 0;
   boots_until_ = elapsed() + kStartUp;
@@ -182,11 +188,11 @@ CanFrame CubemarsDrive::servoFeedback() const noexcept {
 CanFrame CubemarsDrive::mitReply() const noexcept {
   const auto& r = own_.ranges;
   std::array<std::uint8_t, 8> data{};
-  // The position goes round at the ends of its field.
+  // Scaled without limits (float_to_uint() of the Mini Cheetah's firmware, from which this protocol is).
   const double rad = std::remainder(driveAngleDeg() * kRadPerDeg, 2.0 * r.position_rad);
-  const auto position = coded(rad, r.position_rad, 65535.0);
-  const auto velocity = coded(driveRpm() * kRadPerSPerRpm, r.velocity_rad_s, 4095.0);
-  const auto torque = coded(driveTorqueNm(), r.torque_nm, 4095.0);
+  const std::uint32_t position = wrappedCode(rad, r.position_rad, 16);
+  const std::uint32_t velocity = wrappedCode(driveRpm() * kRadPerSPerRpm, r.velocity_rad_s, 12);
+  const std::uint32_t torque = wrappedCode(driveTorqueNm(), r.torque_nm, 12);
   data[0] = static_cast<std::uint8_t>(id_);
   writeBigEndian(data, 1, static_cast<std::uint16_t>(position));
   data[3] = static_cast<std::uint8_t>(velocity >> 4U);

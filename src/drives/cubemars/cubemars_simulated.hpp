@@ -27,8 +27,9 @@ class CubemarsDrive : public ServoDrive {
  private:
   void receiveServo(const CanFrame& frame) noexcept;
   void receiveMit(const CanFrame& frame) noexcept;
-  void obeyMit(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness, std::uint32_t damping,
+  void takeLaw(std::uint32_t position, std::uint32_t velocity, std::uint32_t stiffness, std::uint32_t damping,
                std::uint32_t torque) noexcept;
+  void followLaw() noexcept;
   void setDrivePosition(double message_deg, double limit_rpm) noexcept;
   [[nodiscard]] CanFrame servoFeedback() const noexcept;
   [[nodiscard]] CanFrame mitReply() const noexcept;
@@ -39,6 +40,7 @@ class CubemarsDrive : public ServoDrive {
   int id_;
   Duration feedback_period_;
   bool entered_ = false;  ///< MIT: obeys.
+  SpringLaw law_{};       ///< The last: kept over leaving the mode, and obeyed again on entering it.
   std::uint8_t error_ = 0;
   Duration error_until_{};
   Duration last_command_{};

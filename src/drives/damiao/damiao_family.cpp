@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/units.hpp"
 #include "drives/damiao/damiao_motor.hpp"
 
 namespace rc10 {
@@ -124,6 +125,16 @@ class DamiaoFamily final : public MotorFamily {
   }
 };
 
+double given(const OwnValues& own, std::string_view key, double otherwise) {
+  const double value = own.number(key);
+  return value > 0.0 ? value : otherwise;
+}
+
+DamiaoScale scaleOf(const DamiaoModel& model, const OwnValues& own) {
+  return {given(own, "p_max_rad", model.scale.p_max_rad), given(own, "v_max_rad_s", model.scale.v_max_rad_s),
+          given(own, "t_max_nm", model.scale.t_max_nm)};
+}
+
 MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) const {
   const auto* found = findDamiaoModel(name);
   const DamiaoModel& model = found != nullptr ? *found : damiaoModels().front();
@@ -137,6 +148,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.effort_full_scale = model.current_max_a;
   traits.torque_nm_per_a = model.torque_nm_per_a;
   traits.no_load_rpm = model.no_load_rpm;
+  traits.reported_rpm = static_cast<float>(damiaoFastestRadS(model, scaleOf(model, own)) / kRadPerSPerRpm);
   traits.nominal_v = model.nominal_v;
   traits.rotor_inertia_kg_m2 = model.rotor_inertia_kg_m2;
   traits.phase_resistance_ohm = model.phase_resistance_ohm;
@@ -240,23 +252,19 @@ DamiaoSettings damiaoSettings(const MotorSettings& settings) {
   const auto* found = findDamiaoModel(settings.model);
   const DamiaoModel& model = found != nullptr ? *found : damiaoModels().front();
   const auto& own = settings.own;
-  const auto given = [&own](std::string_view key, double otherwise) {
-    const double value = own.number(key);
-    return value > 0.0 ? value : otherwise;
-  };
   const double own_gear = gearRatioOf(settings, model) / model.gear_ratio;
   const double gain = own_gear * own_gear;
   const double steps = own.number("watchdog_ms") / damiao::kTimeoutStepMs;
-  return {.master_id = static_cast<std::uint32_t>(own.integer("master_id")) & kStandardIdMask,
-          .control = damiaoControl(own.text("control")),
-          // 0 would switch it off.
-          .timeout = static_cast<std::uint32_t>(std::max(1.0, std::round(steps))),
-          .scale = {given("p_max_rad", model.scale.p_max_rad), given("v_max_rad_s", model.scale.v_max_rad_s),
-                    given("t_max_nm", model.scale.t_max_nm)},
-          .gains = {given("velocity_damping_nms_per_rad", gain * model.gains.velocity_damping_nms_per_rad),
-                    given("angle_stiffness_nm_per_rad", gain * model.gains.angle_stiffness_nm_per_rad),
-                    given("angle_damping_nms_per_rad", gain * model.gains.angle_damping_nms_per_rad)},
-          .can_fd = own.flag("can_fd")};
+  return {
+      .master_id = static_cast<std::uint32_t>(own.integer("master_id")) & kStandardIdMask,
+      .control = damiaoControl(own.text("control")),
+      // 0 would switch it off.
+      .timeout = static_cast<std::uint32_t>(std::max(1.0, std::round(steps))),
+      .scale = scaleOf(model, own),
+      .gains = {given(own, "velocity_damping_nms_per_rad", gain * model.gains.velocity_damping_nms_per_rad),
+                given(own, "angle_stiffness_nm_per_rad", gain * model.gains.angle_stiffness_nm_per_rad),
+                given(own, "angle_damping_nms_per_rad", gain * model.gains.angle_damping_nms_per_rad)},
+      .can_fd = own.flag("can_fd")};
 }
 
 }  // namespace rc10

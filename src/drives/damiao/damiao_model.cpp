@@ -1,5 +1,8 @@
 #include "drives/damiao/damiao_model.hpp"
 
+#include <algorithm>
+
+#include "app/units.hpp"
 #include "motor/model_table.hpp"
 
 // Scales, ratios, torque constants, drive currents, speeds, resistances and inertias are those of the table
@@ -82,7 +85,8 @@ constexpr std::array kDamiaoModels{
                 .gear_ratio = 6.0,
                 .torque_nm_per_a = 0.7308F,
                 .current_max_a = kMiddleDriveA,
-                .no_load_rpm = 226.0F,  // 408 at 48 V
+                .no_load_rpm = 226.0F,
+                .top_rpm = 408.0F,  // at 48 V
                 .phase_resistance_ohm = 0.435F,
                 .rotor_inertia_kg_m2 = 5.8e-5F,
                 .output_encoder = true,
@@ -99,7 +103,8 @@ constexpr std::array kDamiaoModels{
                 .gear_ratio = 6.0,
                 .torque_nm_per_a = 1.0206F,
                 .current_max_a = kLargeDriveA,
-                .no_load_rpm = 194.2F,  // 392.8 at 48 V
+                .no_load_rpm = 194.2F,
+                .top_rpm = 392.8F,  // at 48 V
                 .phase_resistance_ohm = 0.4F,
                 .rotor_inertia_kg_m2 = 1.15e-4F,
                 .output_encoder = true,
@@ -109,7 +114,8 @@ constexpr std::array kDamiaoModels{
                 .gear_ratio = 9.0,
                 .torque_nm_per_a = 1.261575F,
                 .current_max_a = kLargeDriveA,
-                .no_load_rpm = 168.0F,  // 335 at 48 V
+                .no_load_rpm = 168.0F,
+                .top_rpm = 335.0F,  // at 48 V
                 .phase_resistance_ohm = 0.145F,
                 .rotor_inertia_kg_m2 = 1.95e-4F,
                 .output_encoder = true,
@@ -119,7 +125,8 @@ constexpr std::array kDamiaoModels{
                 .gear_ratio = 10.0,
                 .torque_nm_per_a = 2.59875F,
                 .current_max_a = 100.0F,
-                .no_load_rpm = 75.0F,  // 150 at 48 V
+                .no_load_rpm = 75.0F,
+                .top_rpm = 150.0F,  // at 48 V
                 .phase_resistance_ohm = 0.125F,
                 .rotor_inertia_kg_m2 = 5.5e-4F,
                 .output_encoder = true,
@@ -129,7 +136,8 @@ constexpr std::array kDamiaoModels{
                 .gear_ratio = 10.0,
                 .torque_nm_per_a = 2.00025F,
                 .current_max_a = 99.7F,
-                .no_load_rpm = 100.0F,  // 200 at 48 V
+                .no_load_rpm = 100.0F,
+                .top_rpm = 200.0F,  // at 48 V
                 .phase_resistance_ohm = 0.11F,
                 .rotor_inertia_kg_m2 = 5.56e-4F,
                 .output_encoder = true,
@@ -153,6 +161,9 @@ constexpr std::array kDamiaoModels{
                 .gains = kDirectGains},
 };
 
+// Above the no-load speed: a full battery, a load that drives. More than the default of overspeed_rpm.
+constexpr double kDamiaoReach = 1.7;
+
 constexpr auto kDamiaoNames = modelNames(kDamiaoModels);
 
 }  // namespace
@@ -162,6 +173,11 @@ std::span<const DamiaoModel> damiaoModels() noexcept { return kDamiaoModels; }
 std::span<const std::string_view> damiaoModelNames() noexcept { return kDamiaoNames; }
 
 const DamiaoModel* findDamiaoModel(std::string_view name) noexcept { return findModel(kDamiaoModels, name); }
+
+double damiaoFastestRadS(const DamiaoModel& model, const DamiaoScale& scale) noexcept {
+  const auto top_rpm = static_cast<double>(std::max(model.no_load_rpm, model.top_rpm));
+  return std::max(scale.v_max_rad_s, kDamiaoReach * top_rpm * kRadPerSPerRpm);
+}
 
 DamiaoControl damiaoControl(std::string_view name) noexcept {
   for (std::size_t i = 0; i < kDamiaoControlNames.size(); ++i) {

@@ -29,6 +29,7 @@ struct DamiaoModel {
   float torque_nm_per_a = 0.0F;  ///< At the output.
   float current_max_a = 0.0F;    ///< The drive's: 1.0 in its per-unit currents.
   float no_load_rpm = 0.0F;
+  float top_rpm = 0.0F;  ///< The same at the highest voltage of its range; 0: no_load_rpm.
   float nominal_v = 24.0F;
   float phase_resistance_ohm = 0.0F;
   float rotor_inertia_kg_m2 = 0.0F;
@@ -42,6 +43,9 @@ struct DamiaoModel {
 [[nodiscard]] std::span<const std::string_view> damiaoModelNames() noexcept;
 /// nullptr if there is no such model.
 [[nodiscard]] const DamiaoModel* findDamiaoModel(std::string_view name) noexcept;
+
+/// Fastest speed of the drive's output that its feedback can tell: beyond v_max by counting wraps.
+[[nodiscard]] double damiaoFastestRadS(const DamiaoModel& model, const DamiaoScale& scale) noexcept;
 
 /// The drive's mode of control, register 10. The numbers are the drive's.
 enum class DamiaoControl : std::uint8_t {

@@ -17,8 +17,6 @@ constexpr std::size_t kFrameLength = 8;
 // Tries to clear the faults of a drive before it is given up.
 constexpr int kClears = 5;
 constexpr Duration kPositionAskedEvery = std::chrono::milliseconds{20};
-// The drive turns at most so much faster than its no-load speed: a full battery, a load that drives.
-constexpr double kOverspeed = 1.3;
 // No drive starts within that time; slow feedback has gaps of its own.
 constexpr Duration kDamiaoRestartSilence = std::chrono::milliseconds{100};
 constexpr int kDamiaoRestartPeriods = 3;
@@ -27,8 +25,7 @@ constexpr double kFarthestTargetRad = 1e4;
 
 double fastest(const MotorSettings& settings, const DamiaoScale& scale) {
   const auto* model = findDamiaoModel(settings.model);
-  const double no_load_rpm = model != nullptr ? static_cast<double>(model->no_load_rpm) : 0.0;
-  return std::max(scale.v_max_rad_s, kOverspeed * no_load_rpm * kRadPerSPerRpm);
+  return model != nullptr ? damiaoFastestRadS(*model, scale) : scale.v_max_rad_s;
 }
 
 }  // namespace

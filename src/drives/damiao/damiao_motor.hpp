@@ -11,10 +11,10 @@
 #include "drives/damiao/damiao_mit.hpp"
 #include "drives/damiao/damiao_position.hpp"
 #include "drives/damiao/damiao_setup.hpp"
-#include "drives/damiao/damiao_speed.hpp"
 #include "motor/drive_configuring.hpp"
 #include "motor/position_reach.hpp"
 #include "motor/solo_motor.hpp"
+#include "motor/wrapped_speed.hpp"
 
 namespace rc10 {
 
@@ -77,7 +77,7 @@ class Damiao_Motor : public SoloMotor {
   Duration heard_within_;  ///< A drive silent for longer is not asked for a register as well.
 
   DamiaoPosition position_;
-  DamiaoSpeed speed_;
+  WrappedSpeed speed_;
   Travel travel_;
   SpringReach reach_;
   LeadBound lead_;

@@ -10,6 +10,7 @@
 #include "app/units.hpp"
 #include "bus/byte_order.hpp"
 #include "drives/damiao/damiao_family.hpp"
+#include "sim/wrapped_code.hpp"
 
 namespace rc10::sim {
 
@@ -23,13 +24,6 @@ constexpr std::uint8_t kSaveOperation = 0xAA;
 constexpr std::uint8_t kStateOperation = 0xCC;
 constexpr std::uint8_t kDriveC = 30;
 constexpr auto kTimeoutStep = std::chrono::microseconds{50};
-
-/// As the drive encodes: what does not fit wraps.
-std::uint16_t wrappedCode(double value, double limit, unsigned bits) noexcept {
-  const double full = static_cast<double>((1U << bits) - 1U);
-  const auto code = static_cast<std::int64_t>((value + limit) * full / (2.0 * limit));
-  return static_cast<std::uint16_t>(static_cast<std::uint64_t>(code) & ((1U << bits) - 1U));
-}
 
 double readFinite(std::span<const std::uint8_t> payload, std::size_t at) noexcept {
   return static_cast<double>(finiteOr0(readLittleEndian<float>(payload, at)));

@@ -51,6 +51,7 @@ class DjiFamily final : public MotorFamily {
     traits.effort_full_scale = table.full_scale;
     traits.torque_nm_per_a = model.rotor_torque_nm_per_a * static_cast<float>(model.gear_ratio);
     traits.no_load_rpm = model.no_load_rpm;
+    traits.reported_rpm = static_cast<float>(32767.0 / model.gear_ratio);  // 16 bits of rpm of the rotor
     traits.min_feedback_hz = 200;
     traits.absolute = model.absolute_output;
     traits.reports_temperature = model.reports_temperature;

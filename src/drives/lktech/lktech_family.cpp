@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "app/units.hpp"
 #include "drives/lktech/lktech_group.hpp"
 #include "drives/lktech/lktech_model.hpp"
 #include "drives/lktech/lktech_motor.hpp"
@@ -62,6 +63,8 @@ class LktechFamily final : public MotorFamily {
                                  ? static_cast<float>(own_torque)
                                  : model.rotor_torque_nm_per_a * static_cast<float>(model.gear_ratio);
     traits.nominal_v = 24.0F;
+    // 16 bits of degrees per second of the rotor.
+    traits.reported_rpm = static_cast<float>(32767.0 / kDegPerSPerRpm / model.gear_ratio);
     traits.absolute = true;  // direct drives, and gears with a second encoder at the output (E)
     traits.frozen_a = static_cast<float>(model.amperes_per_raw * lktech::kRawCurrentMax);
     traits.signed_a = traits.frozen_a;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "app/units.hpp"
 #include "drives/myactuator/myactuator_model.hpp"
 #include "drives/myactuator/myactuator_motor.hpp"
 
@@ -68,6 +69,11 @@ class MyactuatorFamily final : public MotorFamily {
     traits.effort_full_scale = model.peak_current_a;
     traits.torque_nm_per_a = own_torque > 0.0 ? static_cast<float>(own_torque) : model.torque_nm_per_a;
     traits.no_load_rpm = model.rated_rpm * kNoLoadPerRated;
+    // The motion mode ends where some models are slower than their no-load speed: those are watched in the
+    // other modes alone (16 bits of degrees per second).
+    constexpr double kMotionRpm = myactuator::kMotionVelocityRadS / kRadPerSPerRpm;
+    traits.reported_rpm = static_cast<float>(
+        static_cast<double>(traits.no_load_rpm) < kMotionRpm ? kMotionRpm : 32767.0 / kDegPerSPerRpm);
     traits.nominal_v = model.nominal_v;
     traits.absolute = own.flag("absolute_encoder");
     traits.frozen_a = model.peak_current_a;

@@ -51,6 +51,7 @@ MyActuator_Motor::MyActuator_Motor(const MotorSettings& settings, const MotorTra
                            .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(id_)}}},
       command_ids_{CanId{myactuator::kRequestBase + static_cast<std::uint32_t>(id_), false},
                    CanId{myactuator::kMotionBase + static_cast<std::uint32_t>(id_), false}},
+      speed_(myactuator::kMotionVelocityRadS),
       enabling_(kMyactuatorStepPatience, kMyactuatorStepTries) {
   speedFieldEndsAt(myactuator::kMotionVelocityRadS);
 }
@@ -129,7 +130,8 @@ FrameVerdict MyActuator_Motor::takeAngleReply(const CanFrame& frame) noexcept {
   zero_before_ = zero;
   if (!running_) return FrameVerdict::kAccepted;
   const std::int32_t raw = myactuator::decodeAngle(frame.payload());
-  if (!raw_angle_) {
+  const bool follows = raw_angle_.has_value();
+  if (!follows) {
     // After a restart a drive that knows its angle says it; another's angle goes on from where it was.
     const bool absolute = traits().absolute && get_GearRatio() == traits().gear_ratio;
     if (absolute || feedback_.samples == 0) angle_raw_ = raw;
@@ -140,7 +142,9 @@ FrameVerdict MyActuator_Motor::takeAngleReply(const CanFrame& frame) noexcept {
   }
   raw_angle_ = raw;
   motion_rad_.reset();
-  acceptSample(frame.received, static_cast<double>(angle_raw_) * myactuator::kDegPerRaw);
+  const double drive_deg = static_cast<double>(angle_raw_) * myactuator::kDegPerRaw;
+  speed_.add(drive_deg * kRadPerDeg, follows, frame.received);
+  acceptSample(frame.received, drive_deg);
   return FrameVerdict::kAccepted;
 }
 
@@ -344,9 +348,9 @@ void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
   motion.velocity_rad_s = told_rad_s;
   // The answer to a motion command is younger than the last angle, which is asked for now and then. Within
   // its range both count from one zero.
-  const SpringState measured{
-      .position_rad = motion_rad_.value_or(measuredDeg() * kRadPerDeg),
-      .velocity_rad_s = toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm};
+  const double seen_rad_s = toDrive(finiteOr0(static_cast<double>(feedback_.velocity_rpm))) * kRadPerSPerRpm;
+  const SpringState measured{.position_rad = motion_rad_.value_or(measuredDeg() * kRadPerDeg),
+                             .velocity_rad_s = speed_of_motion_ ? speed_.of(seen_rad_s) : seen_rad_s};
   const double bound_nm = std::min(driveTorqueLimitNm(), myactuator::kMotionTorqueNm);
   if (boundTorque(motion, measured, bound_nm, SpringYield::kGains)) limits_ |= kLimitCurrent;
   setCommand(torqueToOutput(torqueNm(motion, measured)) / static_cast<double>(torqueNmPerA()),

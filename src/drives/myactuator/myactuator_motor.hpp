@@ -9,6 +9,7 @@
 #include "motor/drive_configuring.hpp"
 #include "motor/enable_sequence.hpp"
 #include "motor/frame_outbox.hpp"
+#include "motor/saturated_speed.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -93,6 +94,7 @@ class MyActuator_Motor final : public SoloMotor {
   std::optional<double> motion_rad_;       ///< Angle of a motion answer since then.
   bool zero_before_ = false;               ///< The reply before said 0.
   bool speed_of_motion_ = false;           ///< Its scale is that of the motion mode.
+  SaturatedSpeed speed_;                   ///< Beyond the end of that scale.
   bool running_ = false;                   ///< It has been the same run of the drive since angles were taken.
   std::optional<std::uint32_t> uptime_ms_;
   MonotonicTime uptime_at_{};

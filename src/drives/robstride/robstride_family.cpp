@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/units.hpp"
 #include "drives/robstride/robstride_motor.hpp"
 
 namespace rc10 {
@@ -124,6 +125,7 @@ class RobstrideFamily final : public MotorFamily {
     traits.effort_full_scale = static_cast<float>(full_scale_a);
     traits.torque_nm_per_a = static_cast<float>(torque_nm_per_a);
     traits.no_load_rpm = model.no_load_rpm;
+    traits.reported_rpm = static_cast<float>(model.velocity_range_rad_s * kRpmPerRadPerS);
     traits.nominal_v = model.nominal_v;
     traits.phase_resistance_ohm = model.phase_resistance_ohm;
     traits.absolute = model.absolute;

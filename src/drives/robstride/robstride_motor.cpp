@@ -78,6 +78,7 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
                // The CyberGear's manual has the two ids of a fault frame the other way round.
                fromDrive(robstride::Type::kFault, codec_.host_id, codec_.drive_id)},
       command_ids_{codec_.read(0).id, codec_.write(0, 0.0F).id},
+      speed_(model_->velocity_range_rad_s),
       travel_(settings.travel) {
   speedFieldEndsAt(model_->velocity_range_rad_s);
   const double square = ratio() * ratio();
@@ -193,6 +194,7 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
   feedback_.angle_at_end = !wraps() && (seen.raw_position == 0 || seen.raw_position == 0xFFFF);
   if (feedback_.samples == 0) {
     position_rad_ = seen.position_rad;
+    speed_.add(position_rad_, false, received);
     return;
   }
   double moved = seen.position_rad - seen_.position_rad;
@@ -203,8 +205,10 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
                                            static_cast<double>(seconds(longestApart(gap, feedbackPeriod())));
   const bool jumped = std::abs(moved) > reach;
   if (jumped) ++feedback_.jumps;
-  if (gap > kLongestGap || jumped || feedback_.angle_at_end) doubtAngles();
+  const bool follows = gap <= kLongestGap && !jumped && !feedback_.angle_at_end;
+  if (!follows) doubtAngles();
   position_rad_ += moved;
+  speed_.add(position_rad_, follows, received);
 }
 
 bool RobStride_Motor::setZero(double angle_deg) noexcept {

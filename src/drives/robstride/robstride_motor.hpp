@@ -11,6 +11,7 @@
 #include "motor/drive_configuring.hpp"
 #include "motor/lead_bound.hpp"
 #include "motor/position_reach.hpp"
+#include "motor/saturated_speed.hpp"
 #include "motor/solo_motor.hpp"
 
 namespace rc10 {
@@ -63,7 +64,7 @@ class RobStride_Motor : public SoloMotor {
   /// Total angle that a brake keeps in this tick, in deg.
   [[nodiscard]] double brakeDeg() noexcept;
   [[nodiscard]] SpringState measured() const noexcept {
-    return {position_rad_ + scale_offset_rad_, seen_.velocity_rad_s};
+    return {position_rad_ + scale_offset_rad_, speed_.of(seen_.velocity_rad_s)};
   }
 
   void takeFeedback(const robstride::Feedback& seen, MonotonicTime received) noexcept;
@@ -96,6 +97,7 @@ class RobStride_Motor : public SoloMotor {
   DriveConfiguring configuring_{setup_codec_};
 
   robstride::Feedback seen_;
+  SaturatedSpeed speed_;
   std::uint32_t fault_word_ = 0;
   double position_rad_ = 0.0;      ///< Position of the drive's output, over turns.
   double scale_offset_rad_ = 0.0;  ///< The drive's own count of turns is this much more.

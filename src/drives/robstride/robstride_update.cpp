@@ -118,7 +118,7 @@ void RobStride_Motor::limitApproach(SpringLaw& wanted, MonotonicTime now) noexce
 }
 
 void RobStride_Motor::dropWindup(float /*least_rpm*/) noexcept {
-  lead_.dropWindup(seen_.velocity_rad_s, limitRadS(), limitNm());
+  lead_.dropWindup(measured().velocity_rad_s, limitRadS(), limitNm());
 }
 
 void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {

@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 
 #include "config/config_text.hpp"
+#include "drives/families.hpp"
 
 namespace rc10::test::motor_guard_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
 using namespace std::chrono_literals;
 
 TEST(MotorGuardRules, WithoutKeysAMotorIsWatchedByItsModel) {
@@ -58,6 +61,68 @@ TEST(MotorGuardRules, OverSpeedMustBeAboveWhatMayBeAskedFor) {
   EXPECT_THAT(
       errorsOf(robotWith("{name: a, model: M3508, id: 1, velocity_limit_rpm: 300, overspeed_rpm: 301}")),
       IsEmpty());
+}
+
+// Keys that a family's motors need beside model and id.
+std::string needsOf(std::string_view family) {
+  if (family == "Damiao") return ", master_id: 17";
+  if (family == "VESC") return ", pole_pairs: 7, velocity_limit_rpm: 600";
+  if (family == "moteus") return ", motor_kv_rpm_per_v: 100";
+  if (family == "ODrive")
+    return ", torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600";
+  if (family == "LK-Tech" || family == "LKTech") return ", velocity_limit_rpm: 300";
+  return "";
+}
+
+MotorConfig watchedMotor(const std::string& keys) {
+  const std::string bus = keys.find("moteus") == std::string::npos ? "" : "    data_bitrate: 5000000\n";
+  const auto outcome = parseRobotConfig("robot: r\nbuses:\n  - name: b\n    type: sim\n" + bus +
+                                            "    motors:\n      - {name: a, id: 1, " + keys + "}\n",
+                                        "r.yaml");
+  EXPECT_TRUE(outcome.config) << keys << outcome.errorText();
+  return outcome.config.value().buses.at(0).motors.at(0);
+}
+
+TEST(MotorGuardRules, NoDefaultOfOverSpeedLiesBeyondWhatADriveReports) {
+  std::vector<std::string> unwatched;
+  for (const auto& entry : builtInFamilies()) {
+    for (const auto model : entry.family->models()) {
+      for (const char* protocol : {"", ", protocol: mit", ", protocol: mit_v3"}) {
+        const bool v3 = model.find("-V3") != std::string_view::npos;
+        if (*protocol != '\0' && entry.family->name() != "CubeMars") continue;
+        if (*protocol != '\0' && v3 != (std::string_view{protocol} == ", protocol: mit_v3")) continue;
+        const auto motor =
+            watchedMotor("model: " + std::string{model} + protocol + needsOf(entry.family->name()));
+        SCOPED_TRACE(std::string{model} + protocol);
+        const auto traits = motor.traits();
+        const float rpm = motor.guard.overspeed_rpm;
+        if (traits.no_load_rpm > 0.0F && !(rpm > 0.0F)) unwatched.emplace_back(model);
+        if (rpm > 0.0F) {
+          EXPECT_GE(rpm, 1.1F * traits.no_load_rpm);
+        }
+        if (rpm > 0.0F && traits.reported_rpm > 0.0F) {
+          EXPECT_LE(rpm, 0.99F * traits.reported_rpm);
+        }
+      }
+    }
+  }
+  EXPECT_THAT(unwatched, UnorderedElementsAre("RS00", "RS01", "RS02", "RS03", "RS04", "RS05", "RS06", "EL05",
+                                              "CyberGear"))
+      << "fields that end at the no-load speed";
+}
+
+TEST(MotorGuardRules, AThresholdThatNoFeedbackReachesIsRefused) {
+  EXPECT_THAT(errorsOf(robotWith("{name: a, model: RS00, id: 1, overspeed_rpm: 309}")),
+              ElementsAre("hero.yaml:6:54: buses[0].motors[0].overspeed_rpm: 309 rpm is never seen to be "
+                          "exceeded: the speed that the RS00 reports ends too early; use at most 308 rpm"));
+  EXPECT_EQ(motorOf("{name: a, model: RS00, id: 1, overspeed_rpm: 308}").guard.overspeed_rpm, 308.0F);
+  EXPECT_EQ(motorOf("{name: a, model: RS00, id: 1, overspeed_rpm: 154, gear_ratio: 20}").guard.overspeed_rpm,
+            154.0F);
+  EXPECT_THAT(errorsOf(robotWith("{name: a, model: RS00, id: 1, overspeed_rpm: 155, gear_ratio: 20}")),
+              ElementsAre(HasSubstr("use at most 154 rpm")));
+  EXPECT_THAT(errorsOf(robotWith("{name: a, model: AK80-9, protocol: mit, id: 1, overspeed_rpm: 900}")),
+              ElementsAre(HasSubstr("use at most 887 rpm")))
+      << "its field wraps, and is followed over that";
 }
 
 TEST(MotorGuardRules, DeratingStartsBelowTheTrip) {

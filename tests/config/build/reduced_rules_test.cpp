@@ -46,6 +46,12 @@ TEST(ReducedRules, AVoltageIsReducedWhereTheDriveIsToldOne) {
               ElementsAre(HasSubstr("the M3508 is commanded in amperes; use reduced_current_a")));
 }
 
+TEST(ReducedRules, AReducedSpeedThatNoFeedbackShowsExceededIsRefused) {
+  EXPECT_THAT(errorsOf(robotText(kInput, "reduced_velocity_rpm: 250", "RS00, id: 1")),
+              ElementsAre(HasSubstr("reduced_velocity_rpm: 250 rpm is never seen to be exceeded")));
+  EXPECT_EQ(reducedOf("reduced_velocity_rpm: 240", "RS00, id: 1").velocity_rpm, 240.0F);
+}
+
 TEST(ReducedRules, WithoutThemNothingIsReduced) {
   EXPECT_FALSE(motorOf("{name: a, model: M3508, id: 1}").reduced.any());
 }

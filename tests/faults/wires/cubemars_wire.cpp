@@ -7,6 +7,7 @@
 #include "bus/can_frame.hpp"
 #include "drives/cubemars/cubemars_model.hpp"
 #include "faults/wire.hpp"
+#include "faults/wrapped_reading.hpp"
 
 namespace rc10::test {
 namespace {
@@ -18,9 +19,17 @@ constexpr double kCubeMarsDampingMax = 5.0;
 class CubemarsWire final : public Wire {
  public:
   explicit CubemarsWire(const MotorConfig& config)
-      : Wire(config), setup_(cubemarsSettings(config.settings.model, config.settings.own)) {
+      : Wire(config),
+        setup_(cubemarsSettings(config.settings.model, config.settings.own)),
+        reading_(2.0 * setup_.ranges.position_rad, setup_.ranges.velocity_rad_s,
+                 std::max(setup_.ranges.velocity_rad_s,
+                          cubemarsFastestRpm(*setup_.model) * std::numbers::pi / 30.0)) {
     own_id_ = static_cast<std::uint32_t>(id());
     mit_ = setup_.protocol == CubemarsProtocol::kMit;
+    // Scaled without limits: float_to_uint() of the Mini Cheetah's firmware.
+    if (mit_)
+      measured_.velocity_wrap_rpm =
+          std::fabs(rpmOfRadPerS(setup_.ranges.velocity_rad_s)) * 2.0 * 4096.0 / 4095.0;
   }
 
   std::uint64_t said(const CanFrame& frame) override {
@@ -90,7 +99,8 @@ class CubemarsWire final : public Wire {
       on_ = frame.data[7] == 0xFC;
       return;
     }
-    saidLaw(frame, {0, 16}, {16, 12}, {28, 12}, {40, 12}, {52, 12});
+    // Outside of the mode no law is taken in, and the last one acts again in it.
+    if (on_) saidLaw(frame, {0, 16}, {16, 12}, {28, 12}, {40, 12}, {52, 12});
   }
 
   struct Field {
@@ -132,7 +142,8 @@ class CubemarsWire final : public Wire {
     if (frame.length != 8 && frame.length != 6) return false;
     const auto& range = setup_.ranges;
     position_rad_ = onScale(bitsAt(frame, 8, 16), -range.position_rad, range.position_rad, 16);
-    velocity_rad_s_ = onScale(bitsAt(frame, 24, 12), -range.velocity_rad_s, range.velocity_rad_s, 12);
+    const double told_rad_s = onScale(bitsAt(frame, 24, 12), -range.velocity_rad_s, range.velocity_rad_s, 12);
+    velocity_rad_s_ = reading_.take(told_rad_s, position_rad_, frame.received);
     measured_.velocity_rpm = rpmOfRadPerS(velocity_rad_s_);
     if (frame.length == 8) measured_.temperature_c = frame.data[6] - 40.0;
     return true;
@@ -143,6 +154,7 @@ class CubemarsWire final : public Wire {
   }
 
   CubemarsSettings setup_;
+  WrappedReading reading_;
   std::uint32_t own_id_ = 0;
   bool mit_ = false;
   bool on_ = false;

@@ -5,6 +5,7 @@
 #include "bus/can_frame.hpp"
 #include "drives/damiao/damiao_family.hpp"
 #include "faults/wire.hpp"
+#include "faults/wrapped_reading.hpp"
 
 namespace rc10::test {
 namespace {
@@ -22,8 +23,13 @@ constexpr double kDamiaoDampingMax = 5.0;
 class DamiaoWire final : public Wire {
  public:
   explicit DamiaoWire(const MotorConfig& config)
-      : Wire(config), own_(damiaoSettings(config.settings)), mode_(static_cast<unsigned>(own_.control)) {
+      : Wire(config),
+        own_(damiaoSettings(config.settings)),
+        mode_(static_cast<unsigned>(own_.control)),
+        reading_(2.0 * own_.scale.p_max_rad * 65536.0 / 65535.0, own_.scale.v_max_rad_s,
+                 damiaoFastestRadS(*findDamiaoModel(config.settings.model), own_.scale)) {
     measured_.velocity_step_rpm = std::fabs(rpmOfRadPerS(own_.scale.v_max_rad_s)) * 2.0 / 4095.0;
+    measured_.velocity_wrap_rpm = 4096.0 * measured_.velocity_step_rpm;
     command_id_ = {(mode_ - 1U) * 0x100U + static_cast<std::uint32_t>(id()), false};
   }
 
@@ -51,7 +57,9 @@ class DamiaoWire final : public Wire {
     if (of_register) return false;
     if (frame.data[0] >> 4U != 1U) told_.law = Told::Law::kOff;  // it is not enabled
     position_rad_ = onScale(bitsAt(frame, 8, 16), -own_.scale.p_max_rad, own_.scale.p_max_rad, 16);
-    velocity_rad_s_ = onScale(bitsAt(frame, 24, 12), -own_.scale.v_max_rad_s, own_.scale.v_max_rad_s, 12);
+    const double told_rad_s =
+        onScale(bitsAt(frame, 24, 12), -own_.scale.v_max_rad_s, own_.scale.v_max_rad_s, 12);
+    velocity_rad_s_ = reading_.take(told_rad_s, position_rad_, frame.received);
     measured_.velocity_rpm = rpmOfRadPerS(velocity_rad_s_);
     const auto celsius = [](std::uint8_t byte) {
       return static_cast<double>(static_cast<std::int8_t>(byte));
@@ -148,6 +156,7 @@ class DamiaoWire final : public Wire {
 
   DamiaoSettings own_;
   unsigned mode_;
+  WrappedReading reading_;
   CanId command_id_;
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;

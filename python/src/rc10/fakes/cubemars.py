@@ -163,7 +163,8 @@ class FakeCubeMars(Shaft):
     """An AK drive in one of its three protocols.
 
     When commands stop, it holds the last one: no timeout is documented. `timeout_s` makes a
-    kinder drive. A MIT drive of before V3 obeys only after ENTER; each frame to it is answered.
+    kinder drive. A MIT drive of before V3 takes in laws only after ENTER, and keeps the last one
+    over EXIT; each frame to it is answered, with fields that wrap.
 
     Public attributes may be read and set at any time:
         current_a: torque-producing; positive drives in the positive direction.
@@ -290,7 +291,6 @@ class FakeCubeMars(Shaft):
             self.error = 0
         elif data == EXIT:
             self.entered = False
-            self._mode = None
         elif data == ZERO:
             self.angle_rad = 0.0
         else:
@@ -352,7 +352,7 @@ class FakeCubeMars(Shaft):
 
     def _wanted_nm(self, inertia: float, dt_s: float) -> float:
         model = self.model
-        if self._mode is None:
+        if self._mode is None or not (self.extended or self.entered):
             return 0.0
         if self._mode == DUTY:
             no_load_rad_s = model.no_load_rpm / RPM_PER_RAD_S
@@ -444,5 +444,6 @@ def _value(code: int, bits: int, low: float, high: float) -> float:
 
 
 def _code(value: float, bits: int, reach: float) -> int:
+    """Scales without limits, as float_to_uint() of the Mini Cheetah's firmware: it wraps."""
     last = (1 << bits) - 1
-    return max(0, min(last, int((value + reach) / (2 * reach) * last)))
+    return math.floor((value + reach) / (2 * reach) * last) & last

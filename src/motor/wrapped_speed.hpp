@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -8,13 +9,14 @@
 
 namespace rc10 {
 
-/// Speed of a Damiao drive. Its field wraps at +-v_max, which some models pass without a load: there a shaft
-/// that is too fast would seem to turn back, and would be driven on. The way since the samples before says
-/// which of the wraps it is. Scheduler thread only.
-class DamiaoSpeed {
+/// Speed of a drive whose field of 12 bits wraps at +-v_max (Damiao, CubeMars mit), which some models pass
+/// without a load: there a shaft that is too fast would seem to turn back, and would be driven on. The way
+/// since the samples before says which of the wraps it is. A field that is cut off instead stays as it is
+/// told. Scheduler thread only.
+class WrappedSpeed {
  public:
   /// `fastest_rad_s`: that the drive reaches; a field that says more never wraps.
-  DamiaoSpeed(double v_max_rad_s, double fastest_rad_s) noexcept
+  WrappedSpeed(double v_max_rad_s, double fastest_rad_s) noexcept
       : wrap_rad_s_(2.0 * v_max_rad_s * kCodes / (kCodes - 1.0)), fastest_rad_s_(fastest_rad_s) {}
 
   /// As reported, and the position that goes on over turns; `follows`: it does since the sample before.
@@ -44,14 +46,15 @@ class DamiaoSpeed {
 
  private:
   static constexpr double kCodes = 4096.0;
-  // A slip of the encoder that DamiaoPosition takes for noise, 0.1 rad, is no wrap over this time.
+  // A slip of the encoder by 0.1 rad is no wrap over this time.
   static constexpr Duration kWindow = std::chrono::milliseconds{25};
   static constexpr Duration kShort = std::chrono::milliseconds{3};
 
   [[nodiscard]] double nearest(double told_rad_s, double to_rad_s) const noexcept {
-    const double other_rad_s = told_rad_s - std::copysign(wrap_rad_s_, told_rad_s);
-    const bool nearer = std::fabs(other_rad_s - to_rad_s) < std::fabs(told_rad_s - to_rad_s);
-    return nearer && std::fabs(other_rad_s) <= fastest_rad_s_ ? other_rad_s : told_rad_s;
+    const double least = std::min(std::ceil((-fastest_rad_s_ - told_rad_s) / wrap_rad_s_), 0.0);
+    const double most = std::max(std::floor((fastest_rad_s_ - told_rad_s) / wrap_rad_s_), 0.0);
+    return told_rad_s +
+           wrap_rad_s_ * std::clamp(std::round((to_rad_s - told_rad_s) / wrap_rad_s_), least, most);
   }
   void begin(double position_rad, MonotonicTime now) noexcept {
     begun_rad_ = position_rad;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <chrono>
+#include <cmath>
+
+#include "motor/wrapped_speed.hpp"
+
+namespace rc10::test {
+
+/// Speed of a drive whose fields of position and speed both go round at their ends.
+class WrappedReading {
+ public:
+  /// `field_rad`: from one end of the position's field to the other. `fastest_rad_s`: see WrappedSpeed.
+  WrappedReading(double field_rad, double v_max_rad_s, double fastest_rad_s) noexcept
+      : field_rad_(field_rad), speed_(v_max_rad_s, fastest_rad_s) {}
+
+  double take(double told_rad_s, double position_rad, MonotonicTime received) noexcept {
+    const bool follows = received - received_ <= kLongestGap;
+    way_rad_ += std::remainder(position_rad - position_rad_, field_rad_);
+    position_rad_ = position_rad;
+    received_ = received;
+    return speed_.take(told_rad_s, way_rad_, follows, received);
+  }
+
+ private:
+  // More, and the drive may have been restarted.
+  static constexpr Duration kLongestGap = std::chrono::milliseconds{100};
+
+  double field_rad_;
+  WrappedSpeed speed_;
+  double position_rad_ = 0.0;
+  double way_rad_ = 0.0;
+  MonotonicTime received_{};
+};
+
+}  // namespace rc10::test
