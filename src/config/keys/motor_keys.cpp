@@ -88,9 +88,10 @@ constexpr std::array kMotorKeys{
         .kind = kNumber,
         .unit = "rpm",
         .range = {.min = 0, .max = 100'000, .above_min = true},
-        .about = "Three samples faster than this are a fault. Must be above velocity_limit_rpm, and within what "
-                 "the drive reports. Default: 1.5 times the model's no-load speed, at most 98 % of the fastest "
-                 "that it reports; none where that is about the no-load speed (RobStride)."},
+        .about =
+            "Three samples faster than this are a fault. Must be above velocity_limit_rpm, and within what "
+            "the drive reports. Default: 1.5 times the model's no-load speed, at most 98 % of the fastest "
+            "that it reports; none where that is about the no-load speed (RobStride)."},
     Key{.name = "reduced_velocity_rpm",
         .kind = kNumber,
         .unit = "rpm",
