@@ -52,6 +52,8 @@ struct MotorTraits {
   std::string_view unseen_limit{};
   /// Key with the drive's own limit of the current, which its loops obey in place of current_limit_a.
   std::string_view own_limit_key{};
+  bool limit_by_report = false;  ///< A loop of the drive is seen at its limit by the current that it reports.
+  bool yields = false;           ///< A loop that bounds a force, to be overpowered by a larger one.
 
   /// Whether its velocity loop runs on the host, as well as its angle loop.
   [[nodiscard]] bool hostVelocityLoop() const noexcept { return host_loops != nullptr && !own_velocity_loop; }

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -73,6 +74,11 @@ Told Wire::springOf(const MitFields& fields, const MitFields& steps, double posi
                             fields.stiffness * steps.position_rad + steps.damping * std::fabs(change_rad_s) +
                             fields.damping * steps.velocity_rad_s;
   told.sum_step = std::fabs(effortOfNm(rounded_nm));
+  // Exactly there the field may be cut off, and the shaft faster.
+  const bool at_end =
+      speed_field_end_rad_s_ > 0.0 && std::fabs(std::fabs(velocity_rad_s) - speed_field_end_rad_s_) <=
+                                          kSpeedFieldStep * speed_field_end_rad_s_;
+  if (told.damped && at_end) told.sum_step = std::numeric_limits<double>::infinity();
   return told;
 }
 

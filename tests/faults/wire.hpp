@@ -118,8 +118,10 @@ class Wire {
   [[noreturn]] void refuse(const CanFrame& frame, const char* why) const;
 
   Heard measured_;
+  double speed_field_end_rad_s_ = 0.0;  ///< At the drive; 0: its speed is told at any.
 
  private:
+  static constexpr double kSpeedFieldStep = 1.0 / 2048.0;  // of twelve bits, the coarsest
   MotorSettings settings_;
   MotorTraits traits_;
   double per_output_;

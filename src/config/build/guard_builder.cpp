@@ -16,6 +16,10 @@ constexpr double kLeastOverspeed = 1.1;  // a full battery
 constexpr double kStall = 0.02;
 // Against all its torque: more than a load or another robot that pushes adds.
 constexpr double kRunaway = 0.1;
+// A turn per second: where the no-load speed is unknown, a tenth of the user's limit may be a hand's push.
+constexpr double kLeastUnknownRunawayRpm = 60.0;
+// A push that is over, and the lag of a current that the drive filters.
+constexpr Duration kReportedRunawayTime = std::chrono::milliseconds{100};
 // Share of full scale: error of the current of a drive in order.
 constexpr float kFrozen = 0.05F;
 // GM6020 manual: it warns above 100 C, its winding stands 125 C; the C620 warns from 125 C.
@@ -29,6 +33,7 @@ constexpr float kRestOfLimit = 0.5F;
 constexpr Duration kRestTime = std::chrono::milliseconds{100};
 constexpr int kFastCurrentHz = 50;
 constexpr int kReportsOfStall = 2;
+constexpr int kReportsOfRunaway = 2;
 
 // None where the feedback ends below what the motor may turn at.
 float defaultOverspeedRpm(const MotorParse& in) {
@@ -76,7 +81,7 @@ void checkStall(MotorParse& in) {
       std::chrono::duration_cast<std::chrono::milliseconds>(in.draft.config.guard.stall_time);
   if (!given || stall_ms.count() == 0) return;
   const std::string_view key = in.traits.own_limit_key;
-  if (!key.empty() && !in.settings.mentions(key)) {
+  if (!key.empty() && !in.motor().own_limit_known) {
     in.problems.error(given->place(), given->path,
                       "needs " + std::string{key} +
                           ": a stall is a current at the limit that the drive itself has; write what is set "
@@ -94,9 +99,31 @@ void checkStall(MotorParse& in) {
                         " or more, or let it come more often");
 }
 
+void readRunaway(MotorParse& in) {
+  GuardConfig& guard = in.draft.config.guard;
+  const bool guessed = !(in.traits.no_load_rpm > 0.0F) && in.noLoadRpm() > 0.0;
+  guard.runaway_rpm =
+      static_cast<float>(std::max(kRunaway * in.noLoadRpm(), guessed ? kLeastUnknownRunawayRpm : 0.0));
+  in.motor().own_limit_known =
+      !in.traits.own_limit_key.empty() && in.settings.mentions(in.traits.own_limit_key);
+  if (in.traits.limit_by_report) {
+    const int current_hz = in.traits.signed_current_hz;
+    const auto reports = current_hz > 0 ? kReportsOfRunaway * periodOf(current_hz) : Duration{0};
+    guard.runaway_time = std::max(kReportedRunawayTime, reports);
+  }
+  const auto given = in.settings.find("runaway_rpm");
+  if (in.traits.yields) guard.runaway_rpm = 0.0F;
+  if (given && in.traits.yields) {
+    in.problems.error(
+        given->place(), given->path,
+        "its control bounds a force and yields to a larger one, which is no runaway; remove it");
+  }
+  in.settings.read("runaway_rpm", guard.runaway_rpm);
+}
+
 void readRest(MotorParse& in) {
   RestConfig& rest = in.draft.config.rest;
-  rest.gained_rpm = in.draft.config.guard.runaway_rpm;
+  rest.gained_rpm = static_cast<float>(kRunaway * in.noLoadRpm());
   rest.current_a = kRest * in.traits.signed_a;
   const float limit_a = in.byVoltage() ? 0.0F : in.motor().effort_limit;
   if (limit_a > 0.0F) rest.current_a = std::min(rest.current_a, kRestOfLimit * limit_a);
@@ -132,7 +159,7 @@ void readGuard(MotorParse& in) {
     guard.stall_rpm = in.draft.config.standstill_rpm;
   }
   guard.encoder_jumps = true;
-  guard.runaway_rpm = static_cast<float>(kRunaway * in.noLoadRpm());
+  readRunaway(in);
   guard.frozen_a = kFrozen * in.traits.frozen_a;
   in.settings.read("following_error_deg", guard.following_error_deg);
   const auto behind_ms = in.settings.number("following_error_ms").value_or(kFollowingErrorMs);

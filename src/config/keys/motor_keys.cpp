@@ -156,6 +156,17 @@ constexpr std::array kMotorKeys{
         .needs = kNeedsSeenLimit,
         .default_text = "fault",
         .about = "fault: the motor stops until cleared. notify: the state shows it, nothing else."},
+    Key{.name = "runaway_rpm",
+        .kind = kNumber,
+        .unit = "rpm",
+        .range = {.min = 0, .max = 100'000, .above_min = true},
+        .needs = kNeedsSeenLimit,
+        .about =
+            "A motor at its current or voltage limit that gains so much speed the other way is a fault: "
+            "at once, or where a loop of the drive is at its limit after 100 ms and two reports of the "
+            "current. A load that is let down as asked is none. Default: a tenth of the no-load speed; of "
+            "velocity_limit_rpm where that is not known, at least 60. Not for Damiao control "
+            "force_position, which yields."},
     Key{.name = "rest_current_a",
         .kind = kNumber,
         .unit = "A",

@@ -166,8 +166,8 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
       operation == Operation::kSetGains ? GainsAtEnd::askedBy(request, speaker) : Result<bool>{false};
   if (order && !tries) order = tl::unexpected(tries.error());
   if (!operation || !order) {
-    // Nothing was done, so there is nothing to remember: it is refused again.
     outcome.response = respond(request, link::ResponseStatus::kRefused, order.error().message);
+    answered_.remember(asker, request, *outcome.response);
     return outcome;
   }
   if (!outcome.estop) {

@@ -158,6 +158,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   if (!boundsCurrent(control))
     traits.unseen_limit =
         "its drive obeys a limit that no frame carries; write control: mit or force_position";
+  traits.yields = control == DamiaoControl::kForcePosition;
   traits.scaled_speed = true;
   traits.bounds_effort = control == DamiaoControl::kMit || control == DamiaoControl::kForcePosition;
   traits.asked = true;

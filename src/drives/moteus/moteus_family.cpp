@@ -97,6 +97,7 @@ class MoteusFamily final : public MotorFamily {
         kv_rpm_per_v > 0.0 ? static_cast<float>(kTorqueTimesKv / kv_rpm_per_v * gear_ratio) : 0.0F;
     traits.frozen_a = kFullScaleA;
     traits.signed_a = traits.frozen_a;
+    traits.limit_by_report = true;
     traits.nominal_v = 24.0F;
     traits.no_load_rpm = static_cast<float>(kv_rpm_per_v * 24.0 / gear_ratio);
     traits.absolute = own.flag("absolute");

@@ -72,12 +72,13 @@ class MyactuatorFamily final : public MotorFamily {
     // The motion mode ends where some models are slower than their no-load speed: those are watched in the
     // other modes alone (16 bits of degrees per second).
     constexpr double kMotionRpm = myactuator::kMotionVelocityRadS / kRadPerSPerRpm;
-    traits.reported_rpm = static_cast<float>(
-        static_cast<double>(traits.no_load_rpm) < kMotionRpm ? kMotionRpm : 32767.0 / kDegPerSPerRpm);
+    const bool ends_early = traits.no_load_rpm > 0.0F && static_cast<double>(traits.no_load_rpm) < kMotionRpm;
+    traits.reported_rpm = static_cast<float>(ends_early ? kMotionRpm : 32767.0 / kDegPerSPerRpm);
     traits.nominal_v = model.nominal_v;
     traits.absolute = own.flag("absolute_encoder");
     traits.frozen_a = model.peak_current_a;
     traits.signed_a = traits.frozen_a;
+    traits.limit_by_report = true;
     traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;
     // No such drive starts faster: its bootloader alone takes longer.

@@ -131,6 +131,7 @@ class RobstrideFamily final : public MotorFamily {
     traits.absolute = model.absolute;
     traits.frozen_a = static_cast<float>(model.torque_range_nm / torque_nm_per_a);
     traits.signed_a = traits.frozen_a;
+    traits.limit_by_report = control == RobstrideControl::kVelocity || control == RobstrideControl::kPosition;
     traits.scaled_speed = true;
     traits.asked = true;
     traits.watchdog = own.integer("watchdog_ms") > 0;

@@ -60,6 +60,7 @@ VESC_Motor::VESC_Motor(const MotorSettings& settings)
     : SoloMotor(settings, vescTraits(vescSettings(settings.own)),
                 reportedTurns(settings, vescSettings(settings.own))),
       own_(vescSettings(settings.own)),
+      own_limit_known_(settings.own_limit_known),
       id_(settings.id),
       rotor_per_output_(get_GearRatio() * static_cast<double>(direction())),
       patience_(std::max(kShortestPatience, kPatiencePeriods * feedbackPeriod())),
@@ -152,7 +153,8 @@ void VESC_Motor::followCurrent(const Target& target) noexcept {
 
 // The drive's loops know nothing of current_limit_a.
 void VESC_Motor::seeOwnLimit() noexcept {
-  if (currentAtLimit(static_cast<double>(own_.motor_current_max_a), vesc::kAmperesPerCount))
+  if (own_limit_known_ &&
+      currentAtLimit(static_cast<double>(own_.motor_current_max_a), vesc::kAmperesPerCount))
     limits_ |= kLimitCurrent;
 }
 

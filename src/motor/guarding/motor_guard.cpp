@@ -29,6 +29,7 @@ void MotorGuard::reset() noexcept {
   begun_ = false;
   fast_samples_ = 0;
   opposed_ = false;
+  runaway_.reset();
   stall_.reset();
   behind_.reset();
   frozen_.reset();
@@ -84,15 +85,22 @@ bool MotorGuard::stalled(const Observation& seen) noexcept {
   return stall_.step(pushes, seen.now, config_.stall_time);
 }
 
+double MotorGuard::errorDeg(const Observation& seen) noexcept {
+  if (seen.target.mode == ControlMode::kTotalAngle) return seen.target.value - seen.feedback.total_angle_deg;
+  if (seen.target.mode != ControlMode::kAngle) return 0.0;
+  return shortestAngle(static_cast<double>(seen.feedback.angle_deg), seen.target.value);
+}
+
+bool MotorGuard::moveIsAsked(const Observation& seen) noexcept {
+  const auto velocity_rpm = static_cast<double>(seen.feedback.velocity_rpm);
+  if (seen.target.mode == ControlMode::kVelocity)
+    return seen.target.value * velocity_rpm > 0.0 && std::fabs(velocity_rpm) <= std::fabs(seen.target.value);
+  return errorDeg(seen) * velocity_rpm > 0.0;
+}
+
 bool MotorGuard::fallsBehind(const Observation& seen) noexcept {
   if (!(config_.following_error_deg > 0.0)) return false;
-  double error_deg = 0.0;
-  if (seen.target.mode == ControlMode::kTotalAngle) {
-    error_deg = seen.target.value - seen.feedback.total_angle_deg;
-  } else if (seen.target.mode == ControlMode::kAngle) {
-    error_deg = shortestAngle(static_cast<double>(seen.feedback.angle_deg), seen.target.value);
-  }
-  const bool behind = std::fabs(error_deg) > config_.following_error_deg;
+  const bool behind = std::fabs(errorDeg(seen)) > config_.following_error_deg;
   return behind_.step(behind, seen.now, config_.following_error_time);
 }
 
@@ -113,19 +121,22 @@ bool MotorGuard::frozen(const Observation& seen, bool new_sample) noexcept {
 }
 
 // A reversed encoder or wrong phases: all the torque there is, and it gains speed the other way. Brakes and
-// loads that push slow it down, or at most keep its speed.
+// loads that push slow it down, or at most keep its speed; a heavy load that is let down gains speed, as
+// asked.
 bool MotorGuard::runsAway(const Observation& seen) noexcept {
   if (!(config_.runaway_rpm > 0.0F)) return false;
   const float velocity_rpm = seen.feedback.velocity_rpm;
   // A target of the drive's own loop says nothing about its torque: -16 deg from 215 is 199.
   const bool of_effort = seen.unit == CommandUnit::kAmpere || seen.unit == CommandUnit::kVolt;
   const float effort = of_effort ? seen.effort : seen.feedback.current_a;
-  const bool opposed = (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F;
+  const bool opposed =
+      (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F && !moveIsAsked(seen);
   if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
   opposed_ = opposed;
+  const bool lasts = runaway_.step(opposed, seen.now, config_.runaway_time);
   if (!opposed) return false;
   opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));
-  return std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
+  return lasts && std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
 }
 
 float MotorGuard::derate(float temperature_c, MonotonicTime now) noexcept {

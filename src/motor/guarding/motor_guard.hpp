@@ -26,6 +26,7 @@ struct GuardConfig {
   bool encoder_jumps = false;       ///< One is a fault.
   float frozen_a = 0.0F;            ///< The reported current is off by more, and nothing changes at all.
   float runaway_rpm = 0.0F;         ///< Gains so much speed against all its torque.
+  Duration runaway_time{};          ///< In no less than this; 0: in any.
 
   [[nodiscard]] bool any() const noexcept {
     return overspeed_rpm > 0.0F || temperature_trip_c > 0.0F || stall_time > Duration{0} ||
@@ -102,6 +103,10 @@ class MotorGuard {
   [[nodiscard]] bool fallsBehind(const Observation& seen) noexcept;
   [[nodiscard]] bool frozen(const Observation& seen, bool new_sample) noexcept;
   [[nodiscard]] bool runsAway(const Observation& seen) noexcept;
+  /// Distance to the target of an angle mode, 0 in others.
+  [[nodiscard]] static double errorDeg(const Observation& seen) noexcept;
+  /// Its speed is one that its target asks for.
+  [[nodiscard]] static bool moveIsAsked(const Observation& seen) noexcept;
   [[nodiscard]] float factorAt(float temperature_c) const noexcept;
   [[nodiscard]] float derate(float temperature_c, MonotonicTime now) noexcept;
 
@@ -117,6 +122,7 @@ class MotorGuard {
   bool unchanged_ = false;
   bool opposed_ = false;
   float opposed_rpm_ = 0.0F;  ///< Speed when torque began to oppose it.
+  Lasting runaway_;
   Lasting stall_;
   Lasting behind_;
   Lasting frozen_;

@@ -37,7 +37,7 @@ void ReducedMotion::begin(float speed_rpm, MonotonicTime now) noexcept {
   const auto slew_rpm_per_s = static_cast<double>(config_.slew_rpm_per_s);
   const double evenly_rpm_per_s = (ceiling_rpm_ - least) / static_cast<double>(seconds(config_.within / 2));
   // The slew is known to be quick enough from the highest speed that a target has; a load may be faster.
-  const bool beyond = speed_rpm > config_.full_rpm;
+  const bool beyond = speed_rpm > config_.full_rpm + config_.tolerance_rpm;
   const bool by_slew = slew_rpm_per_s > 0.0 && !beyond;
   fall_rpm_per_s_ = by_slew ? slew_rpm_per_s : std::max(slew_rpm_per_s, evenly_rpm_per_s);
 }

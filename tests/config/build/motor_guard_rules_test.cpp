@@ -41,6 +41,40 @@ TEST(MotorGuardRules, WhatIsWrittenHolds) {
   EXPECT_FALSE(guard.stall_trips);
 }
 
+TEST(MotorGuardRules, ARunawayIsATenthOfTheNoLoadSpeedOrWhatIsWritten) {
+  const auto wheel = motorOf("{name: a, model: M3508, id: 1}").guard;
+  EXPECT_NEAR(wheel.runaway_rpm, 48.2F, 0.1F);
+  EXPECT_EQ(wheel.runaway_time, 0ms);
+  EXPECT_EQ(motorOf("{name: a, model: M3508, id: 1, runaway_rpm: 90}").guard.runaway_rpm, 90.0F);
+}
+
+TEST(MotorGuardRules, ARunawayOfADrivesOwnLoopLastsForTwoReportsOfItsCurrent) {
+  const std::string odrive =
+      "{name: a, model: ODrive_v3, id: 1, torque_constant_nm_per_a: 0.05, current_limit_a: 20, "
+      "velocity_limit_rpm: ";
+  const auto slow = motorOf(odrive + "300, telemetry_hz: 10}").guard;
+  EXPECT_EQ(slow.runaway_time, 200ms);
+  EXPECT_EQ(slow.runaway_rpm, 60.0F) << "its no-load speed is not known";
+  EXPECT_EQ(motorOf(odrive + "900, telemetry_hz: 100}").guard.runaway_time, 100ms);
+  EXPECT_EQ(motorOf(odrive + "900, telemetry_hz: 100}").guard.runaway_rpm, 90.0F);
+}
+
+TEST(MotorGuardRules, ALoopThatYieldsHasNoRunaway) {
+  const std::string gripper = "{name: a, model: DM4340, id: 1, master_id: 17, control: force_position";
+  EXPECT_EQ(motorOf(gripper + "}").guard.runaway_rpm, 0.0F);
+  EXPECT_THAT(errorsOf(robotWith(gripper + ", runaway_rpm: 20}")),
+              ElementsAre(HasSubstr("runaway_rpm: its control bounds a force and yields to a larger one, "
+                                    "which is no runaway; remove it")));
+  EXPECT_THAT(errorsOf(robotWith("{name: a, model: DM4340, id: 1, master_id: 17, control: velocity, "
+                                 "runaway_rpm: 20}")),
+              ElementsAre(HasSubstr("runaway_rpm: ")));
+}
+
+TEST(MotorGuardRules, AnRmdXWhoseSpeedIsUnknownIsWatchedAsFarAsItReports) {
+  const auto guard = motorOf("{name: a, model: RMD-X, id: 1, velocity_limit_rpm: 1000}").guard;
+  EXPECT_EQ(guard.overspeed_rpm, 1500.0F);
+}
+
 TEST(MotorGuardRules, TheSpeedScaleHasAThresholdWhereItIsCompared) {
   const std::string motor = "{name: a, model: RS00, id: 1";
   EXPECT_EQ(motorOf(motor + "}").settings.scale_error, 0.2);

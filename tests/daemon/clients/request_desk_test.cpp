@@ -356,9 +356,10 @@ TEST_F(RequestDeskTest, AnotherClientSessionOrNumberIsAnotherRequest) {
   EXPECT_TRUE(begin(request).order);
 }
 
-TEST_F(RequestDeskTest, ARefusalIsGivenAnew) {
-  EXPECT_THAT(refusal(linkRequest(1, "enable", "nobody")), HasSubstr("'nobody'"));
-  EXPECT_THAT(refusal(linkRequest(1, "enable", "nobody")), HasSubstr("'nobody'"));
+TEST_F(RequestDeskTest, ARefusalIsRememberedToo) {
+  (void)refusal(linkRequest(1, "enable", "nobody"));
+  // The same number with another content is a repetition, not a new request.
+  EXPECT_THAT(refusal(linkRequest(1, "enable", "left")), HasSubstr("'nobody'"));
 }
 
 TEST_F(RequestDeskTest, NoOtherProgramPushesAnAnswerOut) {

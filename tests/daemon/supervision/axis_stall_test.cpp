@@ -222,9 +222,31 @@ TEST_P(StallTest, IsNoneWhileAHeavyLoadGainsSpeedAtFullCurrentAndWhereItStopsAga
   EXPECT_GT(limited, 300) << "ms, as long as a stall";
 }
 
-TEST_P(StallTest, ARunawayIsSeenToo) {
+TEST_P(StallTest, ARunawayIsSeenTooButWhereTheLoopYields) {
   OneMotor motor = motorWith("");
-  EXPECT_EQ(faultOfOverload(motor, GetParam().rpm), FaultCode::kRunaway);
+  const auto traits = traitsOf(motor);
+  const FaultCode fault = faultOfOverload(motor, GetParam().rpm);
+  if (traits.yields) {
+    EXPECT_NE(fault, FaultCode::kRunaway);
+  } else if (traits.signed_current_hz == 10) {
+    EXPECT_THAT(fault, AnyOf(FaultCode::kRunaway, FaultCode::kOverspeed)) << "before two reports";
+  } else {
+    EXPECT_EQ(fault, FaultCode::kRunaway);
+  }
+}
+
+TEST_P(StallTest, LettingAHeavyLoadDownAsAskedIsNoRunaway) {
+  OneMotor motor = motorWith("");
+  if (!traitsOf(motor).limit_by_report || !traitsOf(motor).modes.contains(ControlMode::kVelocity)) return;
+  load(motor, &sim::MotorLoad::inertia_kg_m2, 0.05F);
+  load(motor, &sim::MotorLoad::load_torque_nm, -0.97 * fullNm(motor));
+  int braked = 0;
+  for (int i = 0; i < 3000; ++i) {
+    motor.follow(ControlMode::kVelocity, GetParam().rpm * std::min(i / 2000.0, 1.0), 1);
+    ASSERT_EQ(motor.seen().fault, FaultCode::kNone) << "tick " << i;
+    if ((motor.seen().limits & kLimitCurrent) != 0) ++braked;
+  }
+  EXPECT_GT(braked, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StallTest, ::testing::ValuesIn(subjects(kWatched)));

@@ -26,6 +26,7 @@ class CubemarsWire final : public Wire {
                           cubemarsFastestRpm(*setup_.model) * std::numbers::pi / 30.0)) {
     own_id_ = static_cast<std::uint32_t>(id());
     mit_ = setup_.protocol == CubemarsProtocol::kMit;
+    speed_field_end_rad_s_ = mit_ ? setup_.ranges.velocity_rad_s : 0.0;
     // Scaled without limits: float_to_uint() of the Mini Cheetah's firmware.
     if (mit_)
       measured_.velocity_wrap_rpm =

@@ -18,7 +18,9 @@ constexpr double kRadPerRaw = 0.01 * std::numbers::pi / 180.0;
 class MyactuatorWire final : public Wire {
  public:
   explicit MyactuatorWire(const MotorConfig& config)
-      : Wire(config), number_(static_cast<std::uint32_t>(config.settings.id)) {}
+      : Wire(config), number_(static_cast<std::uint32_t>(config.settings.id)) {
+    speed_field_end_rad_s_ = kVelocityRadS;
+  }
 
   std::uint64_t said(const CanFrame& frame) override {
     const bool request = frame.id == CanId{0x140U + number_, false};

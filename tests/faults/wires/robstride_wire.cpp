@@ -30,6 +30,7 @@ class RobstrideWire final : public Wire {
         host_(static_cast<std::uint32_t>(config.settings.own.integer("host_id"))) {
     const double range_rad = config.settings.own.number("position_range_rad");
     range_rad_ = range_rad > 0.0 ? range_rad : model_->position_range_rad;
+    speed_field_end_rad_s_ = model_->velocity_range_rad_s;
   }
 
   std::uint64_t said(const CanFrame& frame) override {

@@ -396,6 +396,46 @@ TEST_F(MotionGuardTest, InADrivesOwnLoopItsCurrentTellsOfARunaway) {
   EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
 }
 
+TEST_F(MotionGuardTest, ALoadThatIsLetDownAsAskedIsNoRunaway) {
+  unit = CommandUnit::kNative;
+  feedback.current_a = 20.0F;
+  for (const auto asked : {Target{.mode = ControlMode::kVelocity, .value = -100.0},
+                           Target{.mode = ControlMode::kTotalAngle, .value = -500.0}}) {
+    guard.reset();
+    target = asked;
+    feedback.velocity_rpm = -1.0F;
+    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+    feedback.velocity_rpm = -99.0F;
+    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+    target.value = -target.value;
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << "from here on it is opposed";
+    feedback.velocity_rpm = -148.0F;
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+  }
+  guard.reset();
+  target = {.mode = ControlMode::kVelocity, .value = -30.0};
+  feedback.velocity_rpm = -31.0F;
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -80.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway) << "faster than asked";
+}
+
+TEST_F(MotionGuardTest, APushThatIsShorterThanItsTimeIsNoRunaway) {
+  guard = MotorGuard{{.runaway_rpm = 48.0F, .runaway_time = 100ms}};
+  effort_a = 20.0F;
+  feedback.velocity_rpm = -1.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -90.0F;
+  EXPECT_EQ(run(99, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = 1.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -1.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -90.0F;
+  EXPECT_EQ(run(99, kLimitCurrent), FaultCode::kNone);
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+}
+
 TEST_F(MotionGuardTest, AtItsThresholdNothingIsWrong) {
   target = {.mode = ControlMode::kTotalAngle, .value = -15.0};
   effort_a = -1.0F;
