@@ -52,6 +52,8 @@ struct MotorTraits {
   std::string_view unseen_limit{};
   /// Key with the drive's own limit of the current, which its loops obey in place of current_limit_a.
   std::string_view own_limit_key{};
+  /// Loops of the drive that obey its own maximum in place of current_limit_a, in words; empty: none.
+  std::string_view unbounded_loops{};
   bool limit_by_report = false;  ///< A loop of the drive is seen at its limit by the current that it reports.
   bool yields = false;           ///< A loop that bounds a force, to be overpowered by a larger one.
 

@@ -68,6 +68,12 @@ void readEffort(MotorParse& in) {
   float effort = 0.0F;
   in.settings.read(key, effort);
   const float limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
+  if (!in.traits.unbounded_loops.empty()) {
+    in.problems.warning(given->place(), given->path,
+                        "does not act in the drive's own loops of " + std::string{in.traits.unbounded_loops} +
+                            ", which obey its own maximum; lower that with the vendor's tool, or keep to "
+                            "other targets while a person is near");
+  }
   if (effort < limit) {
     in.draft.config.reduced.effort_share = effort / limit;
     return;

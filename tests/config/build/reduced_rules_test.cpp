@@ -104,6 +104,22 @@ TEST(ReducedRules, ACurrentIsReducedWhereTheDriveObeysALimit) {
   }
 }
 
+TEST(ReducedRules, LoopsThatObeyNoLimitOfOursAreTold) {
+  const auto warnings = [](const std::string& model) {
+    std::string text;
+    for (const auto& each :
+         parseRobotConfig(robotText(kInput, "reduced_current_a: 2", model), "hero.yaml").warnings)
+      text += each.text + "\n";
+    return text;
+  };
+  EXPECT_THAT(warnings("VESC, id: 1, pole_pairs: 7"), HasSubstr("own loops of velocity, angle and duty"));
+  EXPECT_THAT(warnings("AK80-9, id: 1"), HasSubstr("own loops of velocity and angle"));
+  EXPECT_THAT(warnings("RMD-X8-25, id: 1"), HasSubstr("own loops of velocity and angle"));
+  EXPECT_THAT(warnings("LK-MG5010E-i10, id: 1"), HasSubstr("own loops of angle"));
+  for (const std::string bounded : {"M3508, id: 1", "AK80-9, id: 1, protocol: mit", "RS03, id: 1"})
+    EXPECT_THAT(warnings(bounded), Not(HasSubstr("own loops"))) << bounded;
+}
+
 TEST(ReducedRules, TheRampFitsIntoTheTime) {
   const std::string slow = "velocity_limit_rpm: 400, reduced_velocity_rpm: 100, velocity_slew_rpm_per_s: 200";
   EXPECT_THAT(
