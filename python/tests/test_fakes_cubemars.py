@@ -185,7 +185,7 @@ def test_a_law_outlives_leaving_the_mode_and_acts_again_in_it() -> None:
     assert fake.current_a == pytest.approx(2 / (0.091 * 9), rel=0.01)
 
 
-@pytest.mark.parametrize(("rad_s", "code"), [(49.9, 0xFFA), (50.1, 0x003), (-50.1, 0xFFB)])
+@pytest.mark.parametrize(("rad_s", "code"), [(49.9, 0xFFA), (50.1, 0x003), (-50.1, 0xFFC)])
 def test_a_mit_speed_beyond_its_field_wraps(rad_s: float, code: int) -> None:
     fake = drive("AK80-9:5:mit")
     fake.speed_rad_s = rad_s

@@ -22,6 +22,7 @@ struct Tick {
   return static_cast<float>(std::chrono::duration<double>(duration).count());
 }
 
+/// Period of a rate; below 1 Hz that of 1 Hz.
 [[nodiscard]] constexpr Duration periodOf(int hz) noexcept {
   return Duration{std::chrono::seconds{1}} / (hz > 1 ? hz : 1);
 }

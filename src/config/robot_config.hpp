@@ -166,7 +166,7 @@ struct RobotConfig {
   [[nodiscard]] Duration phase() const noexcept {
     return Duration{static_cast<Duration::rep>(phase_of_period * static_cast<double>(period().count()))};
   }
-  /// Whether rc10-guard is to watch it: motors on a bus of SocketCAN keep their last command.
+  /// Whether rc10-guard is to run: drives on SocketCAN may keep their last command when rc10d dies.
   [[nodiscard]] bool wantsGuard() const noexcept {
     return guard != GuardPolicy::kOff && std::any_of(buses.begin(), buses.end(), [](const BusConfig& bus) {
              return bus.type == BusType::kSocketCan && !bus.motors.empty();

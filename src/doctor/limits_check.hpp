@@ -27,7 +27,7 @@ struct LimitFacts {
 /// Highest priorities that the processes of a robot ask for.
 struct PriorityNeeds {
   int rc10d = 0;
-  bool guard = false;  ///< rc10-guard runs beside rc10d, which may be the one that starts it.
+  bool guard = false;  ///< rc10-guard runs beside rc10d and asks for kGuardPriority.
 };
 
 /// `who`: "rc10d (pid 12)" or "this shell"; `service`: a shell's limits matter less where there is a service.

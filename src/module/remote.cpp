@@ -291,7 +291,7 @@ class Remote : public Module_Base {
     setAge(kAgeMs, age);
     for (std::size_t i = 0; i < values_.size(); ++i)
       setOutput(kFirstChannel + i, heard ? values_[i] : kNoSignal);
-    // Only what counts is shown: who has seen it down may move it up.
+    // A switch shown down counts as down: moving it up then arms.
     if (arm_channel_ && heard) setOutput(kFirstChannel + *arm_channel_, switch_up_ ? switch_ : kNoSignal);
   }
 

@@ -19,7 +19,8 @@ struct MotorTraits {
   float effort_full_scale = 0.0F;             ///< The largest effort that the drive can be told.
   float torque_nm_per_a = 0.0F;               ///< 0: unknown.
   float no_load_rpm = 0.0F;                   ///< At its nominal voltage; 0: unknown.
-  float reported_rpm = 0.0F;                  ///< Fastest that its feedback tells; 0: any.
+  /// Fastest that its feedback tells, at the output of the model's own gear; 0: any.
+  float reported_rpm = 0.0F;
   float nominal_v = 24.0F;
   float rotor_inertia_kg_m2 = 0.0F;   ///< Inertia of the rotor itself; 0: unknown.
   float phase_resistance_ohm = 0.0F;  ///< 0: unknown.
@@ -49,7 +50,7 @@ struct MotorTraits {
   const DriveSetup* setup = nullptr;          ///< Settings that can be written; null: none.
   /// Remedy, in words, where a loop of the drive may be at a limit of its current that is not seen; empty:
   /// seen.
-  std::string_view unseen_limit{};
+  std::string_view unseen_limit_remedy{};
   /// Key with the drive's own limit of the current, which its loops obey in place of current_limit_a.
   std::string_view own_limit_key{};
   /// Loops of the drive that obey its own maximum in place of current_limit_a, in words; empty: none.

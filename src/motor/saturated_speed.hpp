@@ -7,14 +7,18 @@
 
 namespace rc10 {
 
+/// Half a step of the coarsest field of a speed, twelve bits, as a share of its end.
+inline constexpr double kHalfStepOfSpeed = 1.0 / 4096.0;
+
 /// Speed of a drive whose field of the speed is cut off at its ends (RobStride, the motion mode of
-/// MyActuator): there the way of the last samples says how much more it is, so that no damping is
-/// underestimated. For the bounds of a command; readings keep the speed as it is told. Scheduler thread only.
+/// MyActuator, maybe a CubeMars): there the way of the last samples says how much more it is, so that no
+/// damping is underestimated. For the bounds of a command; readings keep the speed as it is told. Scheduler
+/// thread only.
 class SaturatedSpeed {
  public:
   explicit SaturatedSpeed(double end_rad_s) noexcept : end_rad_s_(kEndShare * end_rad_s) {}
 
-  /// A position that goes on over turns; `follows`: it does since the sample before.
+  /// Takes a sample: position over turns, rad; `follows`: it continues that of the sample before.
   void add(double position_rad, bool follows, MonotonicTime received) noexcept {
     const Place place{position_rad, received};
     if (!follows || !std::isfinite(position_rad)) {
@@ -37,8 +41,7 @@ class SaturatedSpeed {
   }
 
  private:
-  // A field of twelve bits, less half a step.
-  static constexpr double kEndShare = 1.0 - 1.0 / 4096.0;
+  static constexpr double kEndShare = 1.0 - kHalfStepOfSpeed;
   // Stamps that come bunched are no speed over this time.
   static constexpr Duration kWindow = std::chrono::milliseconds{10};
 

@@ -7,12 +7,10 @@
 
 #include "app/angle.hpp"
 #include "app/limits.hpp"
+#include "motor/saturated_speed.hpp"
 
 namespace rc10 {
 namespace {
-
-// In a field of twelve bits.
-constexpr double kHalfStep = 1.0 / 4096.0;
 
 // Noise of a measured current, and error of a torque constant by which it is reckoned.
 constexpr double kCurrentErrorShare = 0.05;
@@ -59,7 +57,7 @@ void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) 
   if (traits_.scaled_speed && obeying()) {
     const auto rpm = static_cast<double>(feedback_.velocity_rpm);
     const bool at_end =
-        std::fabs(std::fabs(toDrive(rpm)) - speed_field_end_rpm_) <= kHalfStep * speed_field_end_rpm_;
+        std::fabs(std::fabs(toDrive(rpm)) - speed_field_end_rpm_) <= kHalfStepOfSpeed * speed_field_end_rpm_;
     speed_scale_.add(received, toOutput(drive_position_deg),
                      at_end ? std::numeric_limits<double>::quiet_NaN() : rpm);
   }

@@ -99,8 +99,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// To be called once in each update().
   [[nodiscard]] Target wanted() noexcept;
 
-  /// Whether the measured current is at its limit, or at the end of what the drive can report; `count_a`: the
-  /// resolution of the current on the wire, A.
+  /// Whether the measured current is within 5 % of its limit, or of the end of what the drive can report;
+  /// `count_a`: step of the field, A, the least margin.
   [[nodiscard]] bool currentAtLimit(double count_a) const noexcept;
   /// The same of another limit, A: that of the drive.
   [[nodiscard]] bool currentAtLimit(double limit_a, double count_a) const noexcept;

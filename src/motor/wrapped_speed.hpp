@@ -9,17 +9,22 @@
 
 namespace rc10 {
 
+/// Times the no-load speed up to which wraps are followed: a full battery, a load that drives. More than the
+/// default of overspeed_rpm.
+inline constexpr double kWrapReach = 1.7;
+
 /// Speed of a drive whose field of 12 bits wraps at +-v_max (Damiao, CubeMars mit), which some models pass
 /// without a load: there a shaft that is too fast would seem to turn back, and would be driven on. The way
 /// since the samples before says which of the wraps it is. A field that is cut off instead stays as it is
 /// told. Scheduler thread only.
 class WrappedSpeed {
  public:
-  /// `fastest_rad_s`: that the drive reaches; a field that says more never wraps.
+  /// `fastest_rad_s`: end of the speeds to which wraps are followed; at most `v_max_rad_s`: none is.
   WrappedSpeed(double v_max_rad_s, double fastest_rad_s) noexcept
       : wrap_rad_s_(2.0 * v_max_rad_s * kCodes / (kCodes - 1.0)), fastest_rad_s_(fastest_rad_s) {}
 
-  /// As reported, and the position that goes on over turns; `follows`: it does since the sample before.
+  /// Speed, rad/s, from the told one and the position over turns; `follows`: it continues that of the sample
+  /// before.
   double take(double told_rad_s, double position_rad, bool follows, MonotonicTime received) noexcept {
     const Duration gap = received - std::exchange(before_, received);
     const double moved_rad = position_rad - std::exchange(before_rad_, position_rad);

@@ -4,7 +4,7 @@
 
 namespace rc10::sim {
 
-/// From -limit to limit as a number of `bits`, rounded down: what does not fit wraps, as in firmware that
+/// From -limit to limit as a number of `bits`, truncated: what does not fit wraps, as in firmware that
 /// scales without limits.
 [[nodiscard]] inline std::uint16_t wrappedCode(double value, double limit, unsigned bits) noexcept {
   const double full = static_cast<double>((1U << bits) - 1U);

@@ -1,5 +1,5 @@
-// A load that drives a shaft too fast is a fault in every family, also beyond a field of the speed that
-// wraps.
+// A load that drives a shaft too fast is a fault in every family with a no-load speed of its own, also
+// beyond a field of the speed that wraps.
 #include <gtest/gtest.h>
 
 #include <cmath>

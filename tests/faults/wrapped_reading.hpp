@@ -7,7 +7,9 @@
 
 namespace rc10::test {
 
-/// Speed of a drive whose fields of position and speed both go round at their ends.
+/// Speed of a drive whose fields of position and speed both go round at their ends. A wrong wrap is not seen
+/// with it: it takes the class of the motors, and readings are compared modulo a wrap (wrapped_speed_test
+/// and overspeed_test do see it).
 class WrappedReading {
  public:
   /// `field_rad`: from one end of the position's field to the other. `fastest_rad_s`: see WrappedSpeed.

@@ -250,6 +250,30 @@ TEST(CubemarsMit, AShaftFasterThanItsFieldIsBrakedWithinTheLimit) {
       ASSERT_LE(sign * bench.sumNm(frame, 0.0, sign * rad_s), 0.1) << rad_s;
       ASSERT_GE(sign * bench.sumNm(frame, 0.0, sign * rad_s), -4.0 * 9 * 0.091 - 0.2) << rad_s;
     }
+    const auto frame = bench.command({.mode = ControlMode::kBrake});
+    EXPECT_LT(sign * bench.sumNm(frame, 0.0, sign * 70.0), -1.0);
+  }
+}
+
+// A firmware that does not let its field wrap: the way says how fast it is.
+TEST(CubemarsMit, AShaftBeyondAFieldThatIsCutOffIsBrakedWithinTheLimit) {
+  auto settings = mit();
+  settings.effort_limit = 4.0F;
+  const double end_rad_s = setupOf(settings).ranges.velocity_rad_s;
+  const double fast_rad_s = 1.4 * end_rad_s;
+  for (const double sign : {1.0, -1.0}) {
+    Mit bench(settings);
+    double rad = 0.0;
+    (void)bench.feedMit(0.0);
+    for (int i = 0; i < 100; ++i) {
+      rad += sign * fast_rad_s * 1e-3;
+      (void)bench.feedMit(std::remainder(rad, 25.0), sign * end_rad_s);
+    }
+    EXPECT_NEAR(bench.motor().feedback().velocity_rpm, sign * end_rad_s * 30.0 / kPi, 0.3);
+    const double sum_nm =
+        sign * bench.sumNm(bench.command({.mode = ControlMode::kBrake}), 0.0, sign * fast_rad_s);
+    EXPECT_LT(sum_nm, -1.0);
+    EXPECT_GE(sum_nm, -4.0 * 9 * 0.091 - 0.1);
   }
 }
 

@@ -161,6 +161,7 @@ TEST_F(MyActuatorOfOneAmpere, AShaftFasterThanItsMotionFieldIsDampedWithinTheLim
     const auto text = told({.mode = ControlMode::kImpedance, .damping_nms_per_rad = 2.0F});
     damping = std::stoi(text.substr(4 + 10, 3), nullptr, 16) * 5.0 / 4095.0;
   }
+  EXPECT_GT(damping, 0.0);
   EXPECT_LE(60.0 * damping, 3.125 * 1.03);
 }
 

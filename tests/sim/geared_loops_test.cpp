@@ -94,15 +94,15 @@ TEST_P(GearedLoops, AnAngleStepSettlesWithoutALimitCycle) {
   const double start_deg = shaft().outputAngleDeg();
   const Target target{.mode = ControlMode::kTotalAngle,
                       .value = rig_.motor(0).feedback().total_angle_deg + deg};
-  (void)step(target, deg, [&] { return shaft().outputAngleDeg() - start_deg; });
+  const Course moved = step(target, deg, [&] { return shaft().outputAngleDeg() - start_deg; });
   const Course course = step(target, deg, [&] { return shaft().outputAngleDeg() - start_deg; });
-  EXPECT_LT(course.overshoot, 0.02);
+  EXPECT_LT(moved.overshoot, 0.02);
   EXPECT_LT(course.ripple, 0.002);
   EXPECT_LT(course.error, 0.002);
 }
 
-// A speed that its own output never reaches.
-TEST_P(GearedLoops, ItsSpeedIsLimitedAtThatOfTheRotor) {
+// Behind no gear that is more than the limit of the model's own output.
+TEST_P(GearedLoops, ReachesNineTenthsOfTheNoLoadSpeedOfItsRotor) {
   const double rpm = 0.9 * static_cast<double>(GetParam().model->no_load_rpm) / GetParam().turns;
   const Course course =
       step({.mode = ControlMode::kVelocity, .value = rpm}, rpm, [&] { return shaft().outputRpm(); });

@@ -88,9 +88,9 @@ void checkStall(MotorParse& in) {
                           "there");
     return;
   }
-  // The last report stands until the next: of a motor that has braked to a standstill, too.
+  // A report stands until the next, so one that is older than the standstill must not count as a stall.
   const int current_hz = in.traits.signed_current_hz;
-  if (current_hz <= 0) return;  // with its speed
+  if (current_hz <= 0) return;  // its current comes with its speed
   const int least_ms = kReportsOfStall * 1000 / current_hz;
   if (stall_ms.count() >= least_ms) return;
   in.problems.error(given->place(), given->path,

@@ -98,7 +98,7 @@ void checkCommandSpacing(MotorParse& in) {
   const auto spacing = in.motor().command_divider * periodOf(tick_hz);
   if (most <= Duration::zero() || spacing <= most) return;
   const auto given = in.settings.find("command_divider");
-  if (!given) return;  // of 1: no tick is so long
+  if (!given) return;  // the default, 1, is within it at every tick rate
   const auto most_ms = most / std::chrono::milliseconds{1};
   in.problems.error(given->place(), given->path,
                     given->text() + " asks the drive every " +

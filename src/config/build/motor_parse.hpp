@@ -34,8 +34,8 @@ struct MotorParse {
     if (traits.no_load_rpm <= 0.0F) return static_cast<double>(motor().velocity_limit_rpm);
     return static_cast<double>(traits.no_load_rpm) * traits.gear_ratio / gear();
   }
-  /// The highest speed that a threshold can lie at: less noise below the end of what is reported. Infinite
-  /// where any speed is.
+  /// Highest threshold of speed that noise at the end of the reported range still shows, rpm of the shaft;
+  /// infinite without such an end.
   [[nodiscard]] double highestThresholdRpm() const noexcept {
     constexpr double kBelowEnd = 0.98;
     if (!(traits.reported_rpm > 0.0F)) return std::numeric_limits<double>::infinity();
@@ -49,8 +49,9 @@ struct MotorParse {
   void refuseUnseen(const GivenValue& given, double rpm, double most_rpm) {
     if (rpm <= most_rpm) return;
     problems.error(given.place(), given.path,
-                   given.text() + " rpm is never seen to be exceeded: the speed that the " + modelName() +
-                       " reports ends too early; use at most " + numberText(std::floor(most_rpm)) + " rpm");
+                   given.text() + " rpm is never seen to be exceeded: the " + modelName() +
+                       " reports too low a speed for that; use at most " + numberText(std::floor(most_rpm)) +
+                       " rpm");
   }
   /// Refuses a section whose upper angle is not above its lower one; one that is not given is not checked.
   void refuseUnordered(const Settings& section, std::string_view min_key, std::string_view max_key) {

@@ -60,11 +60,6 @@ void readEffort(MotorParse& in) {
   const char* key = in.byVoltage() ? "reduced_voltage_v" : "reduced_current_a";
   const auto given = in.settings.find(key);
   if (!given) return;
-  if (!in.traits.bounds_effort) {
-    return in.problems.error(given->place(), given->path,
-                             "its drive obeys no limit of its current in control " +
-                                 in.motor().own.text("control") + "; choose another, or remove it");
-  }
   float effort = 0.0F;
   in.settings.read(key, effort);
   const float limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);

@@ -51,6 +51,7 @@ enum Need : std::uint16_t {
   kNeedsAngle = 1U << 11U,         ///< It reports an angle, or what one follows from.
   kNeedsSeenLimit = 1U << 12U,     ///< Its current is seen to be at the limit, in each mode.
   kNeedsHostVelocity = 1U << 13U,  ///< Its velocity loop runs on the host.
+  kNeedsToldLimit = 1U << 14U,     ///< It can be told a limit of its effort.
 };
 
 struct Section;

@@ -90,36 +90,38 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = 100'000, .above_min = true},
         .about =
             "Three samples faster than this are a fault. Must be above velocity_limit_rpm, and within what "
-            "the drive reports. Default: 1.5 times the model's no-load speed, at most 98 % of the fastest "
-            "that it reports; none where that is about the no-load speed (RobStride)."},
+            "the drive reports. Default: 1.5 times the model's no-load speed (of "
+            "`velocity_limit_rpm` where that is not known), at most 98 % of the fastest that it reports; "
+            "none where that is about the no-load speed (RobStride)."},
     Key{.name = "reduced_velocity_rpm",
         .kind = kNumber,
         .unit = "rpm",
         .range = {.min = 0, .max = 100'000, .above_min = true},
         .about = "Bounds the speed in every mode while the contact of mode_gpio is open. Must be below "
                  "velocity_limit_rpm. A shaft a quarter faster, and 2 % of the no-load speed, is a fault "
-                 "after reduced_within_ms. Default: the speed is not reduced."},
+                 "after reduced_within_ms; must be low enough for the drive to report that fault. Default: "
+                 "the speed is not reduced."},
     Key{.name = "reduced_within_ms",
         .kind = kInteger,
         .unit = "ms",
         .range = {.min = 20, .max = 60'000},
         .default_text = "1000",
-        .about = "Time to come down to reduced_velocity_rpm: along velocity_slew_rpm_per_s, without one in "
-                 "half of it."},
+        .about = "Time to come down to reduced_velocity_rpm: along velocity_slew_rpm_per_s; without one, or "
+                 "where a load turns the shaft faster than velocity_limit_rpm, within half of it."},
     Key{.name = "reduced_current_a",
         .kind = kNumber,
         .unit = "A",
         .range = {.min = 0, .max = kByModel, .above_min = true},
-        .needs = kNeedsCurrent,
+        .needs = kNeedsCurrent | kNeedsToldLimit,
         .twin = "reduced_voltage_v",
         .about =
             "In place of current_limit_a while the contact of mode_gpio is open, once the shaft has come "
-            "down. Default: not reduced."},
+            "down. Not for Damiao control velocity and position_velocity. Default: not reduced."},
     Key{.name = "reduced_voltage_v",
         .kind = kNumber,
         .unit = "V",
         .range = {.min = 0, .max = kByModel, .above_min = true},
-        .needs = kNeedsVoltage,
+        .needs = kNeedsVoltage | kNeedsToldLimit,
         .twin = "reduced_current_a",
         .about =
             "In place of voltage_limit_v while the contact of mode_gpio is open, once the shaft has come "
@@ -266,8 +268,8 @@ constexpr std::array kMotorKeys{
         .unit = "deg/s",
         .range = kSlew,
         .needs = kNeedsAngle,
-        .about = "How fast an angle target may move; the angle loop's velocity limit holds anyway. Default: "
-                 "at once."},
+        .about = "How fast an angle target may move; the angle loop's velocity limit holds anyway. Not "
+                 "for a VESC with angle: none. Default: at once."},
     Key{.name = "angle_min_deg",
         .kind = kNumber,
         .unit = "deg",
@@ -276,21 +278,22 @@ constexpr std::array kMotorKeys{
         .about =
             "Soft limit of the multi-turn angle, in force while the angle is referenced. No target "
             "leads beyond it; moving back is allowed. With both limits set they tell an absolute encoder "
-            "its turn at power-up. See docs/safety.md#soft-limits. Default: none."},
+            "its turn at power-up. See docs/safety.md#soft-limits. Not for a VESC with angle: none. "
+            "Default: none."},
     Key{.name = "angle_max_deg",
         .kind = kNumber,
         .unit = "deg",
         .range = kSoftLimit,
         .needs = kNeedsAngle,
-        .about = "The other soft limit. Default: none."},
+        .about = "The other soft limit. Not for a VESC with angle: none. Default: none."},
     Key{.name = "max_first_step_deg",
         .kind = kNumber,
         .unit = "deg",
         .range = {.min = 0, .max = 1'000'000, .above_min = true},
         .needs = kNeedsAngle,
         .about = "An angle target that follows none is refused if it is farther than this from the measured "
-                 "angle. Default: 180 for an absolute encoder with a soft limit and without "
-                 "angle_slew_deg_per_s, else any distance."},
+                 "angle. Not for a VESC with angle: none. Default: 180 for an absolute encoder with a soft "
+                 "limit and without angle_slew_deg_per_s, else any distance."},
     Key{.name = "soft_start_ms",
         .kind = kInteger,
         .unit = "ms",
@@ -305,7 +308,7 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = 1'000'000, .above_min = true},
         .needs = kNeedsAngle,
         .about = "This distance from the angle target, for following_error_ms, is a fault. Needs "
-                 "angle_slew_deg_per_s. Default: not watched."},
+                 "angle_slew_deg_per_s. Not for a VESC with angle: none. Default: not watched."},
     Key{.name = "following_error_ms",
         .kind = kInteger,
         .unit = "ms",
@@ -342,8 +345,8 @@ constexpr std::array kMotorKeys{
         .range = {.min = 1, .max = 100},
         .needs = kNeedsOwnFrames,
         .about = "The drive gets a command in every n-th tick; the motors of a bus take turns. A drive "
-                 "that only answers sends its feedback at that rate. Not for motors that share frames (DJI). "
-                 "Default: 1."},
+                 "that only answers sends its feedback at that rate. LK-Tech and MyActuator: at most 50 ms "
+                 "between two commands. Not for motors that share frames (DJI). Default: 1."},
     Key{.name = "feedback_timeout_ms",
         .kind = kInteger,
         .unit = "ms",

@@ -25,11 +25,16 @@ std::string whyMeaningless(const Key& key, std::uint16_t unmet, const MotorNatur
   if ((unmet & kNeedsScaledSpeed) != 0)
     return "the " + model + " does not report its speed as a share of a range; remove it";
   if ((unmet & kNeedsAngle) != 0)
-    return "the " + model + ", as it is configured, reports no angle; remove it, or write angle";
+    return "the " + model +
+           ", as it is configured, reports no angle; remove it, or choose another value of angle";
   if ((unmet & kNeedsSeenLimit) != 0)
-    return "a stall is a current at its limit, and of the " + model +
-           ", as it is configured, that is not known: " + std::string{nature.traits.unseen_limit} +
+    return "needs to see when the current is at its limit, which the " + model +
+           ", as it is configured, does not show: " + std::string{nature.traits.unseen_limit_remedy} +
            ", or remove it";
+  if ((unmet & kNeedsToldLimit) != 0)
+    return "the " + model +
+           ", as it is configured, is told no limit of its current; choose another value of control, or "
+           "remove it";
   const std::string geared = nature.traits.absolute ? " behind a gear" : "";
   return "the " + model + geared + " does not know its output angle at power-up" + use_twin;
 }
@@ -41,7 +46,8 @@ std::uint16_t MotorNature::metNeeds() const noexcept {
   if (traits.signed_a > 0.0F) met |= kNeedsSignedCurrent;
   if (traits.scaled_speed) met |= kNeedsScaledSpeed;
   if (traits.reports_angle) met |= kNeedsAngle;
-  if (traits.unseen_limit.empty()) met |= kNeedsSeenLimit;
+  if (traits.unseen_limit_remedy.empty()) met |= kNeedsSeenLimit;
+  if (traits.bounds_effort) met |= kNeedsToldLimit;
   if (absolute) met |= kNeedsAbsolute;
   if (traits.host_loops != nullptr) met |= kNeedsHostLoops;
   if (traits.hostVelocityLoop()) met |= kNeedsHostVelocity;

@@ -232,7 +232,7 @@ MotorTraits cubemarsTraits(const CubemarsSettings& own) {
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
   traits.signed_a = traits.frozen_a;
   if (servo) traits.unbounded_loops = "velocity and angle";
-  if (servo) traits.unseen_limit = "set the drive to MIT and write protocol: mit (V3: mit_v3)";
+  if (servo) traits.unseen_limit_remedy = "set the drive to MIT and write protocol: mit (V3: mit_v3)";
   traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
   traits.max_feedback_hz = mit ? 1000 : 500;
   traits.scaled_speed = mit;  // a V3 drive reports in the servo protocol's ERPM

@@ -162,6 +162,7 @@ std::optional<MitReport> readMitReport(const CanFrame& frame, const CubemarsRang
   report.position_rad = fromCode(position, -ranges.position_rad, ranges.position_rad, 16);
   report.at_end = position == 0 || position == 0xFFFFU;
   report.velocity_rad_s = fromCode(velocity, -ranges.velocity_rad_s, ranges.velocity_rad_s, 12);
+  report.speed_at_end = velocity == 0 || velocity == 0xFFFU;
   report.torque_nm = fromCode(torque, -ranges.torque_nm, ranges.torque_nm, 12);
   if (frame.length == 8) {
     report.temperature_c = data[6] - kMitTemperatureOffsetC;

@@ -73,7 +73,8 @@ enum class MitOrder : std::uint8_t { kEnter = 0xFC, kExit = 0xFD, kZero = 0xFE }
 struct MitReport {
   int motor_id = 0;
   double position_rad = 0.0;
-  bool at_end = false;  ///< The position is the first or last that the field can say.
+  bool at_end = false;        ///< The position is the first or last that the field can say.
+  bool speed_at_end = false;  ///< The same of the speed.
   double velocity_rad_s = 0.0;
   double torque_nm = 0.0;
   std::optional<int> temperature_c;  ///< The oldest firmware sends neither this nor an error.

@@ -28,7 +28,7 @@ constexpr double kSpringMismatch = 0.6;
 constexpr int kSamplesAgainst = 4;
 // Detail of kDriveSetting: the drive counts its turns otherwise.
 constexpr std::uint32_t kOtherTurns = 0x4000'0000U;
-// Two samples at the very end of the field: it does not go round, it is cut off.
+// Two samples at the very end of a field: it does not go round, it is cut off.
 constexpr int kSamplesAtEnd = 2;
 
 }  // namespace
@@ -41,6 +41,7 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& 
       velocity_gain_(settings.own.number("velocity_gain_nms_per_rad")),
       speed_(own.ranges.velocity_rad_s,
              std::max(own.ranges.velocity_rad_s, cubemarsFastestRpm(*own.model) * kRadPerSPerRpm)),
+      cut_off_speed_(own.ranges.velocity_rad_s),
       travel_(settings.travel),
       enabling_(kMitStepPatience, kMitAttempts) {
   const auto id = static_cast<std::uint8_t>(settings.id);
@@ -97,6 +98,8 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   const double drive_rad = unwrapped(report->position_rad, anew);
   const bool follows = !anew && reaches(frame.received, drive_rad / kRadPerDeg);
   velocity_rad_s_ = speed_.take(report->velocity_rad_s, drive_rad, follows, frame.received);
+  cut_off_speed_.add(drive_rad, follows, frame.received);
+  samples_at_speed_end_ = report->speed_at_end ? std::min(samples_at_speed_end_ + 1, kSamplesAtEnd) : 0;
   feedback_.velocity_rpm = static_cast<float>(toOutput(velocity_rad_s_ / kRadPerSPerRpm));
   watchSpring(*report);
   takePosition(frame.received, drive_rad / kRadPerDeg);
@@ -192,6 +195,11 @@ void CubemarsMit::update(const Tick& tick) noexcept {
   } else {
     send(damps ? velocityLaw(0.0, 0.0, kMitDampShare * velocity_gain_) : lawOf(target, tick.now));
   }
+}
+
+SpringState CubemarsMit::measured() const noexcept {
+  const bool cut_off = samples_at_speed_end_ == kSamplesAtEnd;
+  return {position_rad_, cut_off ? cut_off_speed_.of(velocity_rad_s_) : velocity_rad_s_};
 }
 
 double CubemarsMit::driveRadS(double output_rpm) const noexcept {

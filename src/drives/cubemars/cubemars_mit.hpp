@@ -6,6 +6,7 @@
 #include "motor/enable_sequence.hpp"
 #include "motor/lead_bound.hpp"
 #include "motor/position_reach.hpp"
+#include "motor/saturated_speed.hpp"
 #include "motor/wrapped_speed.hpp"
 
 namespace rc10 {
@@ -62,7 +63,8 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
   [[nodiscard]] double driveRadS(double output_rpm) const noexcept;
   [[nodiscard]] double limitRadS() const noexcept;  ///< 0: none.
-  [[nodiscard]] SpringState measured() const noexcept { return {position_rad_, velocity_rad_s_}; }
+  /// By the last feedback; where the field of the speed is cut off, by the way.
+  [[nodiscard]] SpringState measured() const noexcept;
   [[nodiscard]] CanFrame commandFrame(const SpringLaw& law) const noexcept;
 
   bool v3_;
@@ -76,6 +78,8 @@ class CubemarsMit : public CubeMars_Motor {
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;
   WrappedSpeed speed_;
+  SaturatedSpeed cut_off_speed_;
+  int samples_at_speed_end_ = 0;
   int turns_ = 0;               ///< Wraps of the position field; 0: within its range.
   bool turns_unknown_ = false;  ///< Silent while outside of its range, and maybe restarted.
   int samples_at_end_ = 0;

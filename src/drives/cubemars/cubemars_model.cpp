@@ -5,6 +5,7 @@
 #include <string>
 
 #include "motor/model_table.hpp"
+#include "motor/wrapped_speed.hpp"
 
 // Sources. Ranges: CubeMars AK series module driver manual V1.0.8 (MIT table), which TMotorCANControl,
 // KMR_CubeMars and cubemars_driver_node repeat; V3: cubemars_driver_node and epicallypowerful. Pole pairs:
@@ -144,8 +145,7 @@ CubemarsSettings cubemarsSettings(std::string_view model_name, const OwnValues& 
 }
 
 double cubemarsFastestRpm(const CubemarsModel& model) noexcept {
-  constexpr double kReach = 1.7;
-  return kReach * static_cast<double>(model.no_load_rpm);
+  return kWrapReach * static_cast<double>(model.no_load_rpm);
 }
 
 std::span<const DriveFault> cubemarsFaults() noexcept { return kCubemarsFaults; }

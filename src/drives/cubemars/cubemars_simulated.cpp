@@ -42,8 +42,7 @@ CubemarsDrive::CubemarsDrive(const MotorSettings& settings, const CubemarsSettin
     : ServoDrive(settings, cubemarsTraits(own), load, cubemarsSends(settings, own)),
       own_(own),
       id_(settings.id) {
-  const int hz = settings.feedback_hz > 0 ? settings.feedback_hz : traits().feedback_hz;
-  feedback_period_ = std::chrono::duration_cast<Duration>(std::chrono::seconds{1}) / std::max(hz, 1);
+  feedback_period_ = periodOf(settings.feedback_hz > 0 ? settings.feedback_hz : traits().feedback_hz);
 }
 
 Duration CubemarsDrive::feedbackPeriod() const noexcept {

@@ -156,11 +156,11 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.frozen_a = static_cast<float>(model.scale.t_max_nm) / model.torque_nm_per_a;
   traits.signed_a = traits.frozen_a;
   if (!boundsCurrent(control))
-    traits.unseen_limit =
+    traits.unseen_limit_remedy =
         "its drive obeys a limit that no frame carries; write control: mit or force_position";
   traits.yields = control == DamiaoControl::kForcePosition;
   traits.scaled_speed = true;
-  traits.bounds_effort = control == DamiaoControl::kMit || control == DamiaoControl::kForcePosition;
+  traits.bounds_effort = boundsCurrent(control);
   traits.asked = true;
   traits.fd = can_fd;
   traits.data_bitrate = can_fd ? 5'000'000 : 0;

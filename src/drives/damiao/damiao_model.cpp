@@ -4,6 +4,7 @@
 
 #include "app/units.hpp"
 #include "motor/model_table.hpp"
+#include "motor/wrapped_speed.hpp"
 
 // Scales, ratios, torque constants, drive currents, speeds, resistances and inertias are those of the table
 // that Seeed publishes (wiki.seeedstudio.com/damiao_series), if nothing else is said. Where the libraries
@@ -161,9 +162,6 @@ constexpr std::array kDamiaoModels{
                 .gains = kDirectGains},
 };
 
-// Above the no-load speed: a full battery, a load that drives. More than the default of overspeed_rpm.
-constexpr double kDamiaoReach = 1.7;
-
 constexpr auto kDamiaoNames = modelNames(kDamiaoModels);
 
 }  // namespace
@@ -176,7 +174,7 @@ const DamiaoModel* findDamiaoModel(std::string_view name) noexcept { return find
 
 double damiaoFastestRadS(const DamiaoModel& model, const DamiaoScale& scale) noexcept {
   const auto top_rpm = static_cast<double>(std::max(model.no_load_rpm, model.top_rpm));
-  return std::max(scale.v_max_rad_s, kDamiaoReach * top_rpm * kRadPerSPerRpm);
+  return std::max(scale.v_max_rad_s, kWrapReach * top_rpm * kRadPerSPerRpm);
 }
 
 DamiaoControl damiaoControl(std::string_view name) noexcept {

@@ -47,8 +47,7 @@ VescDrive::VescDrive(const MotorSettings& settings, const MotorLoad& load)
     : ServoDrive(settings, vescTraits(vescSettings(settings.own)), load, vescSends(settings)),
       own_(vescSettings(settings.own)),
       id_(settings.id),
-      period_(Duration{std::chrono::seconds{1}} /
-              std::max(settings.feedback_hz > 0 ? settings.feedback_hz : 50, 1)),
+      period_(periodOf(settings.feedback_hz > 0 ? settings.feedback_hz : 50)),
       commanded_(-std::chrono::hours{1}) {  // switched on long before anybody commands it
   steps_zero_ = stepsNow();
 }

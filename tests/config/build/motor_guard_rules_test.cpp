@@ -148,7 +148,7 @@ TEST(MotorGuardRules, NoDefaultOfOverSpeedLiesBeyondWhatADriveReports) {
 TEST(MotorGuardRules, AThresholdThatNoFeedbackReachesIsRefused) {
   EXPECT_THAT(errorsOf(robotWith("{name: a, model: RS00, id: 1, overspeed_rpm: 309}")),
               ElementsAre("hero.yaml:6:54: buses[0].motors[0].overspeed_rpm: 309 rpm is never seen to be "
-                          "exceeded: the speed that the RS00 reports ends too early; use at most 308 rpm"));
+                          "exceeded: the RS00 reports too low a speed for that; use at most 308 rpm"));
   EXPECT_EQ(motorOf("{name: a, model: RS00, id: 1, overspeed_rpm: 308}").guard.overspeed_rpm, 308.0F);
   EXPECT_EQ(motorOf("{name: a, model: RS00, id: 1, overspeed_rpm: 154, gear_ratio: 20}").guard.overspeed_rpm,
             154.0F);
@@ -184,8 +184,8 @@ std::string reasonOf(const std::string& motor) {
 }
 
 std::string unseen(const std::string& model, const std::string& remedy) {
-  return "a stall is a current at its limit, and of the " + model +
-         ", as it is configured, that is not known: " + remedy + ", or remove it";
+  return "needs to see when the current is at its limit, which the " + model +
+         ", as it is configured, does not show: " + remedy + ", or remove it";
 }
 
 TEST(MotorGuardRules, AStallIsRefusedWhereNobodySeesTheLimitOfTheCurrent) {
@@ -212,7 +212,7 @@ TEST(MotorGuardRules, AStallIsRefusedWhereNobodySeesTheLimitOfTheCurrent) {
 
 TEST(MotorGuardRules, TheActionOfAStallIsRefusedWithIt) {
   EXPECT_THAT(reasonOf("model: AK80-9, id: 1, stall_action: notify"),
-              ::testing::HasSubstr("stall_action: a stall is a current at its limit"));
+              ::testing::HasSubstr("stall_action: needs to see when the current is at its limit"));
 }
 
 TEST(MotorGuardRules, AStallIsLongerThanTwoReportsOfTheCurrent) {

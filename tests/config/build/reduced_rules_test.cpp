@@ -95,8 +95,9 @@ TEST(ReducedRules, ACurrentIsReducedWhereTheDriveObeysALimit) {
   for (const std::string control : {"velocity", "position_velocity"}) {
     EXPECT_THAT(
         errorsOf(robotText(kInput, "reduced_velocity_rpm: 9, reduced_current_a: 2", damiao + control)),
-        ElementsAre(
-            HasSubstr("reduced_current_a: its drive obeys no limit of its current in control " + control)));
+        ElementsAre(HasSubstr(
+            "reduced_current_a: the DM4340, as it is configured, is told no limit of its current; choose "
+            "another value of control, or remove it")));
     EXPECT_THAT(errorsOf(robotText(kInput, "reduced_velocity_rpm: 9", damiao + control)), IsEmpty());
   }
   for (const std::string control : {"mit", "force_position"}) {

@@ -198,18 +198,17 @@ TEST(RobotRules, TheLcmUrlIsChecked) {
 }
 
 TEST(RobotRules, AGuardIsWantedWhereMotorsHangOnARealBus) {
-  const auto wants = [](const std::string& guard, const std::string& bus, const std::string& motors) {
-    return parseRobotConfig("robot: hero\nguard: " + guard + "\nbuses: [{name: a, " + bus + ", motors: [" +
-                                motors + "]}]\n",
+  const auto wants = [](const std::string& guard, const std::string& bus) {
+    return parseRobotConfig("robot: hero\nguard: " + guard + "\nbuses: [{name: a, " + bus +
+                                ", motors: [{name: wheel, model: M3508, id: 1}]}]\n",
                             "hero.yaml")
         .config.value()
         .wantsGuard();
   };
-  const std::string motor = "{name: wheel, model: M3508, id: 1}";
-  EXPECT_TRUE(wants("preferred", "interface: can0", motor));
-  EXPECT_TRUE(wants("required", "interface: can0", motor));
-  EXPECT_FALSE(wants("off", "interface: can0", motor));
-  EXPECT_FALSE(wants("preferred", "type: sim", motor));
+  EXPECT_TRUE(wants("preferred", "interface: can0"));
+  EXPECT_TRUE(wants("required", "interface: can0"));
+  EXPECT_FALSE(wants("off", "interface: can0"));
+  EXPECT_FALSE(wants("preferred", "type: sim"));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(KeyTable, GivesEveryKeyWhatItsKindNeeds) {
         EXPECT_TRUE(key.form != nullptr || key.hasChoices());
       }
       EXPECT_EQ(is_section, key.section != nullptr);
-      if (key.needs == kNeedsCurrent || key.needs == kNeedsVoltage) {
+      if ((key.needs & (kNeedsCurrent | kNeedsVoltage)) != 0) {
         EXPECT_NE(findKey(*section, key.twin), nullptr);
       }
     }

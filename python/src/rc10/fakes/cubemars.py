@@ -446,4 +446,4 @@ def _value(code: int, bits: int, low: float, high: float) -> float:
 def _code(value: float, bits: int, reach: float) -> int:
     """Scales without limits, as float_to_uint() of the Mini Cheetah's firmware: it wraps."""
     last = (1 << bits) - 1
-    return math.floor((value + reach) / (2 * reach) * last) & last
+    return math.trunc((value + reach) / (2 * reach) * last) & last

@@ -156,7 +156,7 @@ class DamiaoSpec:
 
 def to_code(value: float, limit: float, bits: int) -> int:
     """Maps -limit..limit to 0..2^bits - 1; what lies outside wraps, as in the drive."""
-    return math.floor((value + limit) / (2 * limit) * ((1 << bits) - 1)) & ((1 << bits) - 1)
+    return math.trunc((value + limit) / (2 * limit) * ((1 << bits) - 1)) & ((1 << bits) - 1)
 
 
 def from_code(code: int, limit: float, bits: int) -> float:
