@@ -80,7 +80,7 @@ class AcmeFamily final : public MotorFamily {
                              ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
       traits.frames.brake = traits.frames.hold = Provision::kHostLoop;
     } else {
-      traits.unseen_limit = "it reports no current; take a Turner-C";
+      traits.unseen_limit_remedy = "it reports no current; take a Turner-C";
     }
     return traits;
   }
