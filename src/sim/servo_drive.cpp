@@ -175,10 +175,10 @@ void ServoDrive::step(Duration dt) noexcept {
 }
 
 double ServoDrive::driveAngleDeg() const noexcept {
-  return physics_.outputAngleDeg() * drive_per_output_ - zero_deg_;
+  return encoder_sign_ * physics_.outputAngleDeg() * drive_per_output_ - zero_deg_;
 }
 
-double ServoDrive::driveRpm() const noexcept { return physics_.measuredRotorRpm() / traits_.gear_ratio; }
+double ServoDrive::driveRpm() const noexcept { return rotorRpm() / traits_.gear_ratio; }
 
 double ServoDrive::driveTorqueNm() const noexcept {
   return physics_.currentA() * physics_.parameters().torque_nm_per_a * traits_.gear_ratio;

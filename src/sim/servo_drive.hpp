@@ -30,6 +30,10 @@ class ServoDrive : public Drive {
   [[nodiscard]] const MotorPhysics& physics() const noexcept override { return physics_; }
   [[nodiscard]] const MotorLoad& load() const noexcept override { return load_; }
   void setLoad(const MotorLoad& load) noexcept override;
+  /// Takes `reversed` alone, while the angle is 0.
+  void setEncoderFault(const EncoderFault& fault) noexcept override {
+    encoder_sign_ = fault.reversed ? -1.0 : 1.0;
+  }
 
  protected:
   ServoDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load,
@@ -53,7 +57,7 @@ class ServoDrive : public Drive {
   [[nodiscard]] double driveAngleDeg() const noexcept;  ///< Multi-turn.
   [[nodiscard]] double driveRpm() const noexcept;
   [[nodiscard]] double driveTorqueNm() const noexcept;
-  [[nodiscard]] double rotorRpm() const noexcept { return physics_.measuredRotorRpm(); }
+  [[nodiscard]] double rotorRpm() const noexcept { return encoder_sign_ * physics_.measuredRotorRpm(); }
   [[nodiscard]] double currentA() const noexcept { return physics_.currentA(); }
   [[nodiscard]] const MotorTraits& traits() const noexcept { return traits_; }
   /// The present angle reads this from now on, as the drive's own zero command does.
@@ -87,6 +91,7 @@ class ServoDrive : public Drive {
   double torque_limit_nm_ = 0.0;
   double integral_nm_ = 0.0;
   double zero_deg_ = 0.0;
+  double encoder_sign_ = 1.0;
   std::array<CanFrame, kMaxFrames> answers_{};
   std::size_t answer_count_ = 0;
 };

@@ -99,6 +99,23 @@ void checkStall(MotorParse& in) {
                         " or more, or let it come more often");
 }
 
+void checkRunaway(MotorParse& in, const GivenValue& given) {
+  const auto refuse = [&](const std::string& text) { in.problems.error(given.place(), given.path, text); };
+  if (in.traits.yields)
+    return refuse("its control bounds a force and yields to a larger one, which is no runaway; remove it");
+  const bool seen = in.traits.unseen_limit_remedy.empty();
+  if (!seen && !in.traits.modes.contains(ControlMode::kCurrent)) {
+    return refuse("nothing tells that its loop is at the limit of its current: " +
+                  std::string{in.traits.unseen_limit_remedy} +
+                  ", or write an overspeed_rpm below its no-load speed instead");
+  }
+  const bool in_loops = seen && (in.traits.own_limit_key.empty() || in.motor().own_limit_known);
+  if (in_loops) return;
+  in.problems.warning(given.place(), given.path,
+                      "acts on current targets alone: that a loop of the drive is at its limit is not known" +
+                          (seen ? "; write " + std::string{in.traits.own_limit_key} : std::string{}));
+}
+
 void readRunaway(MotorParse& in) {
   GuardConfig& guard = in.draft.config.guard;
   const bool guessed = !(in.traits.no_load_rpm > 0.0F) && in.noLoadRpm() > 0.0;
@@ -111,14 +128,10 @@ void readRunaway(MotorParse& in) {
     const auto reports = current_hz > 0 ? kReportsOfRunaway * periodOf(current_hz) : Duration{0};
     guard.runaway_time = std::max(kReportedRunawayTime, reports);
   }
-  const auto given = in.settings.find("runaway_rpm");
+  guard.velocity_limit_rpm = in.motor().velocity_limit_rpm;
   if (in.traits.yields) guard.runaway_rpm = 0.0F;
-  if (given && in.traits.yields) {
-    in.problems.error(
-        given->place(), given->path,
-        "its control bounds a force and yields to a larger one, which is no runaway; remove it");
-  }
   in.settings.read("runaway_rpm", guard.runaway_rpm);
+  if (const auto given = in.settings.find("runaway_rpm")) checkRunaway(in, *given);
 }
 
 void readRest(MotorParse& in) {

@@ -56,6 +56,17 @@ void readVelocity(MotorParse& in) {
                         "): each change would be a fault; raise one of the two");
 }
 
+/// Names of the modes with a loop that are in both sets.
+std::string wordsOf(ModeSet some, ModeSet others) {
+  std::string words;
+  for (const auto mode :
+       {ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty}) {
+    if (some.contains(mode) && others.contains(mode))
+      words += (words.empty() ? "" : ", ") + std::string{toString(mode)};
+  }
+  return words;
+}
+
 void readEffort(MotorParse& in) {
   const char* key = in.byVoltage() ? "reduced_voltage_v" : "reduced_current_a";
   const auto given = in.settings.find(key);
@@ -63,11 +74,11 @@ void readEffort(MotorParse& in) {
   float effort = 0.0F;
   in.settings.read(key, effort);
   const float limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
-  if (!in.traits.unbounded_loops.empty()) {
+  if (const std::string modes = wordsOf(in.traits.own_loops, in.traits.modes); !modes.empty()) {
     in.problems.warning(given->place(), given->path,
-                        "does not act in the drive's own loops of " + std::string{in.traits.unbounded_loops} +
-                            ", which obey its own maximum; lower that with the vendor's tool, or keep to "
-                            "other targets while a person is near");
+                        "does not act in " + modes +
+                            ", whose loops in the drive obey its own maximum; lower that with the vendor's "
+                            "tool, or keep to other targets while a person is near");
   }
   if (effort < limit) {
     in.draft.config.reduced.effort_share = effort / limit;

@@ -162,13 +162,13 @@ constexpr std::array kMotorKeys{
         .kind = kNumber,
         .unit = "rpm",
         .range = {.min = 0, .max = 100'000, .above_min = true},
-        .needs = kNeedsSeenLimit,
         .about =
             "A motor at its current or voltage limit that gains so much speed the other way is a fault: "
-            "at once, or where a loop of the drive is at its limit after 100 ms and two reports of the "
-            "current. A load that is let down as asked is none. Default: a tenth of the no-load speed; of "
-            "velocity_limit_rpm where that is not known, at least 60. Not for Damiao control "
-            "force_position, which yields."},
+            "at once, or where a loop of the drive is at its limit once it has kept that for 100 ms and "
+            "two reports of the current. A load that is let down as asked is none. Default: a tenth of "
+            "the no-load speed; of velocity_limit_rpm where that is not known, at least 60; none where "
+            "neither is known. Not for Damiao control velocity and position_velocity, where the limit is "
+            "not seen, nor force_position, which yields."},
     Key{.name = "rest_current_a",
         .kind = kNumber,
         .unit = "A",

@@ -1,11 +1,12 @@
 #include "daemon/clients/answered_requests.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace rc10 {
 namespace {
 
-// A program must not push out the answers of others.
+// A program must not push out the answers of others, nor a user under many names those of other users.
 constexpr std::ptrdiff_t kMaxOfOne = 64;
 constexpr std::size_t kMaxRemembered = 1024;
 
@@ -29,7 +30,20 @@ void AnsweredRequests::remember(std::uint64_t asker, const link::Request& reques
   };
   if (std::count_if(answered_.begin(), answered_.end(), same) > kMaxOfOne)
     answered_.erase(std::find_if(answered_.begin(), answered_.end(), same));
-  if (answered_.size() > kMaxRemembered) answered_.pop_front();
+  if (answered_.size() > kMaxRemembered) forgetOldest(busiestAsker());
+}
+
+std::uint64_t AnsweredRequests::busiestAsker() const {
+  std::map<std::uint64_t, std::size_t> counts;
+  for (const auto& each : answered_) ++counts[each.asker];
+  return std::max_element(counts.begin(), counts.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+void AnsweredRequests::forgetOldest(std::uint64_t asker) {
+  answered_.erase(std::find_if(answered_.begin(), answered_.end(),
+                               [asker](const Answered& each) { return each.asker == asker; }));
 }
 
 const link::Response* AnsweredRequests::find(std::uint64_t asker, const link::Request& request) const {

@@ -19,6 +19,9 @@ class AnsweredRequests {
   [[nodiscard]] const link::Response* find(std::uint64_t asker, const link::Request& request) const;
 
  private:
+  [[nodiscard]] std::uint64_t busiestAsker() const;
+  void forgetOldest(std::uint64_t asker);
+
   struct Answered {
     std::uint64_t asker = 0;
     link::Text<32> operation;

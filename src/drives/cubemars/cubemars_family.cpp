@@ -231,7 +231,7 @@ MotorTraits cubemarsTraits(const CubemarsSettings& own) {
   traits.reports_temperature = true;
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
   traits.signed_a = traits.frozen_a;
-  if (servo) traits.unbounded_loops = "velocity and angle";
+  if (servo) traits.own_loops = kServoModes.without(ControlMode::kCurrent);
   if (servo) traits.unseen_limit_remedy = "set the drive to MIT and write protocol: mit (V3: mit_v3)";
   traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
   traits.max_feedback_hz = mit ? 1000 : 500;

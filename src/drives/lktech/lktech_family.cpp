@@ -69,7 +69,7 @@ class LktechFamily final : public MotorFamily {
     traits.frozen_a = static_cast<float>(model.amperes_per_raw * lktech::kRawCurrentMax);
     traits.signed_a = traits.frozen_a;
     traits.limit_by_report = true;
-    traits.unbounded_loops = "angle";
+    traits.own_loops = ModeSet{ControlMode::kAngle, ControlMode::kTotalAngle};
     traits.asked = true;
     // After a shorter silence the encoder shows which way it went.
     traits.restart_silence = std::chrono::milliseconds{100};

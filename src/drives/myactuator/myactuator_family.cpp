@@ -79,7 +79,7 @@ class MyactuatorFamily final : public MotorFamily {
     traits.frozen_a = model.peak_current_a;
     traits.signed_a = traits.frozen_a;
     traits.limit_by_report = true;
-    traits.unbounded_loops = "velocity and angle";
+    traits.own_loops = ModeSet{ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle};
     traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;
     // No such drive starts faster: its bootloader alone takes longer.

@@ -259,7 +259,7 @@ MotorTraits vescTraits(const VescSettings& own) {
   traits.signed_a = own.motor_current_max_a;
   traits.own_limit_key = "motor_current_max_a";
   traits.limit_by_report = true;
-  traits.unbounded_loops = "velocity, angle and duty";
+  traits.own_loops = kVescModesWithAngle.without(ControlMode::kCurrent);
   traits.asked = false;
   traits.watchdog = own.ask_status;
   traits.reports_angle = own.angle != VescAngle::kNone;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/angle.hpp"
 
@@ -16,6 +17,8 @@ constexpr Duration kFrozenTime = std::chrono::milliseconds{200};
 constexpr float kCoolerC = 3.0F;
 constexpr float kRecoveryPerSecond = 0.2F;
 
+constexpr double kQuarterTurnDeg = 90.0;
+
 }  // namespace
 
 bool MotorGuard::same(const Readings& a, const Readings& b) noexcept {
@@ -29,6 +32,7 @@ void MotorGuard::reset() noexcept {
   begun_ = false;
   fast_samples_ = 0;
   opposed_ = false;
+  gained_rpm_ = 0.0F;
   runaway_.reset();
   stall_.reset();
   behind_.reset();
@@ -91,11 +95,21 @@ double MotorGuard::errorDeg(const Observation& seen) noexcept {
   return shortestAngle(static_cast<double>(seen.feedback.angle_deg), seen.target.value);
 }
 
-bool MotorGuard::moveIsAsked(const Observation& seen) noexcept {
+bool MotorGuard::moveIsAsked(const Observation& seen) const noexcept {
+  const Target& target = seen.target;
   const auto velocity_rpm = static_cast<double>(seen.feedback.velocity_rpm);
-  if (seen.target.mode == ControlMode::kVelocity)
-    return seen.target.value * velocity_rpm > 0.0 && std::fabs(velocity_rpm) <= std::fabs(seen.target.value);
-  return errorDeg(seen) * velocity_rpm > 0.0;
+  double most_rpm = config_.velocity_limit_rpm > 0.0F ? static_cast<double>(config_.velocity_limit_rpm)
+                                                      : std::numeric_limits<double>::infinity();
+  double way = errorDeg(seen);
+  // Far from an angle within a turn both ways are about as long, and a shaft that runs away passes there.
+  if (target.mode == ControlMode::kAngle && std::fabs(way) > kQuarterTurnDeg) return false;
+  if (target.mode == ControlMode::kVelocity) {
+    way = target.value;
+    most_rpm = std::min(most_rpm, std::fabs(target.value));
+  } else if (target.mode == ControlMode::kImpedance && actsByPlace(target)) {
+    way = target.value - seen.feedback.total_angle_deg;
+  }
+  return way * velocity_rpm > 0.0 && std::fabs(velocity_rpm) <= most_rpm;
 }
 
 bool MotorGuard::fallsBehind(const Observation& seen) noexcept {
@@ -133,10 +147,28 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
       (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F && !moveIsAsked(seen);
   if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
   opposed_ = opposed;
-  const bool lasts = runaway_.step(opposed, seen.now, config_.runaway_time);
-  if (!opposed) return false;
-  opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));
-  return lasts && std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
+  bool gained = false;
+  if (opposed) {
+    opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));
+    gained = std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
+  }
+  // Within a turn the way to an angle turns with the shaft, each half turn of it.
+  const bool asked = seen.target.mode != ControlMode::kAngle && moveIsAsked(seen);
+  const bool keeps = keepsGain(velocity_rpm, gained) && !asked;
+  if (!keeps) gained_rpm_ = 0.0F;
+  return runaway_.step(keeps, seen.now, of_effort ? Duration{0} : config_.runaway_time);
+}
+
+bool MotorGuard::keepsGain(float velocity_rpm, bool gained) noexcept {
+  constexpr float kKept = 0.25F;  // share of the gain: noise, less than a push that is over loses
+  if (gained_rpm_ == 0.0F) {
+    if (gained) gained_rpm_ = velocity_rpm;
+    return gained;
+  }
+  const float along_rpm = std::copysign(1.0F, gained_rpm_) * velocity_rpm;
+  const float fastest_rpm = std::max(std::fabs(gained_rpm_), along_rpm);
+  gained_rpm_ = std::copysign(fastest_rpm, gained_rpm_);
+  return along_rpm >= fastest_rpm - kKept * config_.runaway_rpm;
 }
 
 float MotorGuard::derate(float temperature_c, MonotonicTime now) noexcept {

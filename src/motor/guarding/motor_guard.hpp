@@ -26,7 +26,8 @@ struct GuardConfig {
   bool encoder_jumps = false;       ///< One is a fault.
   float frozen_a = 0.0F;            ///< The reported current is off by more, and nothing changes at all.
   float runaway_rpm = 0.0F;         ///< Gains so much speed against all its torque.
-  Duration runaway_time{};          ///< In no less than this; 0: in any.
+  Duration runaway_time{};          ///< It keeps it for so long, in a loop of the drive.
+  float velocity_limit_rpm = 0.0F;  ///< Bounds what a target asks for; 0: none.
 
   [[nodiscard]] bool any() const noexcept {
     return overspeed_rpm > 0.0F || temperature_trip_c > 0.0F || stall_time > Duration{0} ||
@@ -106,7 +107,10 @@ class MotorGuard {
   /// Distance to the target of an angle mode, 0 in others.
   [[nodiscard]] static double errorDeg(const Observation& seen) noexcept;
   /// Its speed is one that its target asks for.
-  [[nodiscard]] static bool moveIsAsked(const Observation& seen) noexcept;
+  [[nodiscard]] bool moveIsAsked(const Observation& seen) const noexcept;
+  /// Since it gained it, its speed has neither turned nor come down: what an own current, which back-EMF
+  /// lowers, no longer tells.
+  [[nodiscard]] bool keepsGain(float velocity_rpm, bool gained) noexcept;
   [[nodiscard]] float factorAt(float temperature_c) const noexcept;
   [[nodiscard]] float derate(float temperature_c, MonotonicTime now) noexcept;
 
@@ -122,6 +126,7 @@ class MotorGuard {
   bool unchanged_ = false;
   bool opposed_ = false;
   float opposed_rpm_ = 0.0F;  ///< Speed when torque began to oppose it.
+  float gained_rpm_ = 0.0F;   ///< The fastest since it has run away, with its sign; 0: it has not.
   Lasting runaway_;
   Lasting stall_;
   Lasting behind_;

@@ -65,9 +65,24 @@ TEST(MotorGuardRules, ALoopThatYieldsHasNoRunaway) {
   EXPECT_THAT(errorsOf(robotWith(gripper + ", runaway_rpm: 20}")),
               ElementsAre(HasSubstr("runaway_rpm: its control bounds a force and yields to a larger one, "
                                     "which is no runaway; remove it")));
-  EXPECT_THAT(errorsOf(robotWith("{name: a, model: DM4340, id: 1, master_id: 17, control: velocity, "
-                                 "runaway_rpm: 20}")),
-              ElementsAre(HasSubstr("runaway_rpm: ")));
+}
+
+TEST(MotorGuardRules, ARunawayIsSetWhereItsLimitIsSeen) {
+  EXPECT_THAT(
+      errorsOf(robotWith("{name: a, model: DM4340, id: 1, master_id: 17, control: velocity, "
+                         "runaway_rpm: 20}")),
+      ElementsAre(HasSubstr("runaway_rpm: nothing tells that its loop is at the limit of its current: ")));
+  const auto warned = [](const std::string& motor) {
+    const auto outcome = parseRobotConfig(robotWith(motor + ", runaway_rpm: 20}"), "hero.yaml");
+    EXPECT_TRUE(outcome.config) << motor;
+    for (const auto& each : outcome.warnings)
+      if (each.text.find("acts on current targets alone") != std::string::npos) return each.text;
+    return std::string{};
+  };
+  EXPECT_THAT(warned("{name: a, model: AK80-9, id: 1"), HasSubstr("is not known"));
+  EXPECT_THAT(warned("{name: a, model: VESC, id: 1, pole_pairs: 7"), HasSubstr("write motor_current_max_a"));
+  EXPECT_THAT(warned("{name: a, model: VESC, id: 1, pole_pairs: 7, motor_current_max_a: 40"), IsEmpty());
+  EXPECT_THAT(warned("{name: a, model: M3508, id: 1"), IsEmpty());
 }
 
 TEST(MotorGuardRules, AnRmdXWhoseSpeedIsUnknownIsWatchedAsFarAsItReports) {

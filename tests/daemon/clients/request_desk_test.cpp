@@ -374,6 +374,19 @@ TEST_F(RequestDeskTest, NoOtherProgramPushesAnAnswerOut) {
   EXPECT_EQ(begin(asked).order->asked, Asked::kAgain) << "no second disable, which lets go of a load";
 }
 
+TEST_F(RequestDeskTest, AUserWithManyNamesPushesOutItsOwnAnswers) {
+  const auto asked = linkRequest(1, "disable", "left");
+  (void)desk.finish(done(*begin(asked).order));
+  for (int name = 0; name < 40; ++name) {
+    for (std::int64_t seq = 1; seq <= 60; ++seq) {
+      auto other = linkRequest(seq, "dance");
+      other.client = "observer" + std::to_string(name);
+      (void)desk.begin(other, {.connection = kConnection + 1, .user = 1});
+    }
+  }
+  EXPECT_EQ(begin(asked).order->asked, Asked::kAgain);
+}
+
 TEST_F(RequestDeskTest, WhatCouldNotBeHandedOverMaySucceedWhenRepeated) {
   const auto outcome = begin(linkRequest(1, "enable"));
   const auto failed = desk.fail(outcome.order->id, "the scheduler does not take orders");

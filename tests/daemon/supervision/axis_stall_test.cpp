@@ -164,8 +164,7 @@ FaultCode faultOfOverload(OneMotor& motor, double rpm) {
   return motor.seen().fault;
 }
 
-// As docs/safety.md says of them.
-TEST(StallOfAFamily, ARunawayThatIsNotSeenEndsAtItsTopSpeedAtTheLatest) {
+TEST(StallOfAFamily, AShaftThatALoadTurnsTooFastIsOverspeedWhereItsLimitIsNotSeen) {
   for (const std::string keys :
        {"model: DM4310, id: 1, master_id: 17, control: velocity",
         "model: DM4310, id: 1, master_id: 17, control: position_velocity", "model: AK80-9, id: 6",
@@ -236,6 +235,33 @@ TEST_P(StallTest, ARunawayIsSeenTooButWhereTheLoopYields) {
     EXPECT_THAT(fault, AnyOf(FaultCode::kRunaway, FaultCode::kOverspeed)) << "before two reports";
   } else {
     EXPECT_EQ(fault, FaultCode::kRunaway);
+  }
+}
+
+// A bare shaft is soon so fast that back-EMF takes its current from the limit.
+TEST_P(StallTest, AReversedEncoderIsARunawayInEachLoop) {
+  for (const auto& [mode, value] :
+       {std::pair{ControlMode::kVelocity, GetParam().rpm}, std::pair{ControlMode::kAngle, 90.0},
+        std::pair{ControlMode::kTotalAngle, 300.0}}) {
+    SCOPED_TRACE(std::string{toString(mode)});
+    OneMotor motor = motorWith("");
+    const auto traits = traitsOf(motor);
+    if (traits.yields || !traits.modes.contains(mode)) continue;
+    motor.robot().simBus().setEncoderFault(0, {.reversed = true});
+    float fastest_rpm = 0.0F;
+    for (int i = 0; i < 3000; ++i) {
+      motor.follow(mode, value, 1);
+      fastest_rpm = std::max(fastest_rpm, std::fabs(motor.seen().feedback.velocity_rpm));
+    }
+    // The other way to an angle is the shorter beyond half a turn: there it may settle.
+    const bool settles = mode == ControlMode::kAngle && motor.seen().fault == FaultCode::kNone;
+    if (settles) {
+      EXPECT_LT(fastest_rpm, 2.0F * motor.config().guard.runaway_rpm);
+      continue;
+    }
+    // Where the no-load speed is not known, one and a half times the user's limit may come first.
+    const auto also = traits.no_load_rpm > 0.0F ? FaultCode::kRunaway : FaultCode::kOverspeed;
+    EXPECT_THAT(motor.seen().fault, AnyOf(FaultCode::kRunaway, also));
   }
 }
 

@@ -420,20 +420,79 @@ TEST_F(MotionGuardTest, ALoadThatIsLetDownAsAskedIsNoRunaway) {
   EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway) << "faster than asked";
 }
 
-TEST_F(MotionGuardTest, APushThatIsShorterThanItsTimeIsNoRunaway) {
-  guard = MotorGuard{{.runaway_rpm = 48.0F, .runaway_time = 100ms}};
+TEST_F(MotionGuardTest, ASpringThatLetsALoadDownIsNoRunaway) {
   effort_a = 20.0F;
+  target = {.mode = ControlMode::kImpedance, .value = -90.0, .stiffness_nm_per_rad = 1.0F};
   feedback.velocity_rpm = -1.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -90.0F;
-  EXPECT_EQ(run(99, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = 1.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -70.0F;
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  target.stiffness_nm_per_rad = 0.0F;  // asks for no place
   feedback.velocity_rpm = -1.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -90.0F;
-  EXPECT_EQ(run(99, kLimitCurrent), FaultCode::kNone);
+  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -70.0F;
   EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+}
+
+TEST_F(MotionGuardTest, ATargetAsksForNoMoreThanTheVelocityLimit) {
+  for (const auto asked : {Target{.mode = ControlMode::kVelocity, .value = -1e6},
+                           Target{.mode = ControlMode::kTotalAngle, .value = -1e6}}) {
+    guard = MotorGuard{{.runaway_rpm = 48.0F, .velocity_limit_rpm = 60.0F}};
+    effort_a = 20.0F;
+    target = asked;
+    feedback.velocity_rpm = -60.0F;
+    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+    feedback.velocity_rpm = -61.0F;
+    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+    feedback.velocity_rpm = -110.0F;
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+  }
+}
+
+/// In a loop of the drive a runaway keeps what it has gained.
+class OwnLoopGuardTest : public MotionGuardTest {
+ protected:
+  OwnLoopGuardTest() {
+    guard = MotorGuard{{.runaway_rpm = 48.0F, .runaway_time = 100ms}};
+    unit = CommandUnit::kNative;
+    feedback.current_a = 20.0F;
+    feedback.velocity_rpm = -1.0F;
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+    feedback.velocity_rpm = -90.0F;
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  }
+};
+
+TEST_F(OwnLoopGuardTest, BackEmfThatTakesTheCurrentFromItsLimitHidesNoRunaway) {
+  feedback.current_a = 1.0F;
+  EXPECT_EQ(run(99, 0), FaultCode::kNone);
+  EXPECT_EQ(run(1, 0), FaultCode::kRunaway);
+}
+
+// Each half turn the shorter way to an angle is the other one.
+TEST_F(OwnLoopGuardTest, AnAngleThatItPassesOverAndOverHidesNoRunaway) {
+  target = {.mode = ControlMode::kAngle, .value = 90.0};
+  for (int i = 0; i < 99; ++i) {
+    feedback.angle_deg = i % 20 < 10 ? 100.0F : 80.0F;
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  }
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+}
+
+TEST_F(OwnLoopGuardTest, APushThatIsOverIsNone) {
+  EXPECT_EQ(run(98, kLimitCurrent), FaultCode::kNone);
+  feedback.velocity_rpm = -77.0F;
+  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  for (int rpm = -77; rpm < 90; ++rpm) {
+    feedback.velocity_rpm = static_cast<float>(rpm);
+    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << "it is brought back";
+  }
+}
+
+TEST_F(OwnLoopGuardTest, ASpeedThatIsAskedForMeanwhileIsNone) {
+  EXPECT_EQ(run(50, kLimitCurrent), FaultCode::kNone);
+  target = {.mode = ControlMode::kVelocity, .value = -100.0};
+  EXPECT_EQ(run(200, kLimitCurrent), FaultCode::kNone);
 }
 
 TEST_F(MotionGuardTest, AtItsThresholdNothingIsWrong) {
