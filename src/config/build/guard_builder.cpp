@@ -32,8 +32,8 @@ constexpr float kRest = 0.05F;
 constexpr float kRestOfLimit = 0.5F;
 constexpr Duration kRestTime = std::chrono::milliseconds{100};
 constexpr int kFastCurrentHz = 50;
-constexpr int kReportsOfStall = 2;
-constexpr int kReportsOfRunaway = 2;
+// A report stands until the next: one alone may be of before.
+constexpr int kReports = 2;
 
 // None where the feedback ends below what the motor may turn at.
 float defaultOverspeedRpm(const MotorParse& in) {
@@ -88,10 +88,9 @@ void checkStall(MotorParse& in) {
                           "there");
     return;
   }
-  // A report stands until the next, so one that is older than the standstill must not count as a stall.
   const int current_hz = in.traits.signed_current_hz;
   if (current_hz <= 0) return;  // its current comes with its speed
-  const int least_ms = kReportsOfStall * 1000 / current_hz;
+  const int least_ms = kReports * 1000 / current_hz;
   if (stall_ms.count() >= least_ms) return;
   in.problems.error(given->place(), given->path,
                     given->text() + " ms is shorter than two reports of the current, which comes " +
@@ -121,11 +120,9 @@ void readRunaway(MotorParse& in) {
   const bool guessed = !(in.traits.no_load_rpm > 0.0F) && in.noLoadRpm() > 0.0;
   guard.runaway_rpm =
       static_cast<float>(std::max(kRunaway * in.noLoadRpm(), guessed ? kLeastUnknownRunawayRpm : 0.0));
-  in.motor().own_limit_known =
-      !in.traits.own_limit_key.empty() && in.settings.mentions(in.traits.own_limit_key);
   if (in.traits.limit_by_report) {
     const int current_hz = in.traits.signed_current_hz;
-    const auto reports = current_hz > 0 ? kReportsOfRunaway * periodOf(current_hz) : Duration{0};
+    const auto reports = current_hz > 0 ? kReports * periodOf(current_hz) : Duration{0};
     guard.runaway_time = std::max(kReportedRunawayTime, reports);
   }
   guard.velocity_limit_rpm = in.motor().velocity_limit_rpm;
@@ -154,6 +151,8 @@ void readRest(MotorParse& in) {
 
 void readGuard(MotorParse& in) {
   GuardConfig& guard = in.draft.config.guard;
+  in.motor().own_limit_known =
+      !in.traits.own_limit_key.empty() && in.settings.mentions(in.traits.own_limit_key);
   guard.overspeed_rpm = defaultOverspeedRpm(in);
   guard.stall_rpm = static_cast<float>(kStall * in.noLoadRpm());
   in.settings.read("overspeed_rpm", guard.overspeed_rpm);

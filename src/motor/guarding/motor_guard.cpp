@@ -147,14 +147,18 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
       (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F && !moveIsAsked(seen);
   if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
   opposed_ = opposed;
+  if (!opposed && gained_rpm_ == 0.0F) {  // as nearly always
+    runaway_.reset();
+    return false;
+  }
   bool gained = false;
   if (opposed) {
     opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));
     gained = std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
   }
   // Within a turn the way to an angle turns with the shaft, each half turn of it.
-  const bool asked = seen.target.mode != ControlMode::kAngle && moveIsAsked(seen);
-  const bool keeps = keepsGain(velocity_rpm, gained) && !asked;
+  const bool keeps =
+      keepsGain(velocity_rpm, gained) && (seen.target.mode == ControlMode::kAngle || !moveIsAsked(seen));
   if (!keeps) gained_rpm_ = 0.0F;
   return runaway_.step(keeps, seen.now, of_effort ? Duration{0} : config_.runaway_time);
 }

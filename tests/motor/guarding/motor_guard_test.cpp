@@ -272,6 +272,11 @@ class MotionGuardTest : public MotorGuardTest {
     }
     return FaultCode::kNone;
   }
+  /// The same at its current limit with this speed.
+  FaultCode atLimit(float velocity_rpm, int samples) {
+    feedback.velocity_rpm = velocity_rpm;
+    return run(samples, kLimitCurrent);
+  }
 };
 
 TEST_F(MotionGuardTest, FarFromTheTargetForLongEnoughIsAFault) {
@@ -390,10 +395,8 @@ TEST_F(MotionGuardTest, InADrivesOwnLoopItsCurrentTellsOfARunaway) {
   unit = CommandUnit::kNative;
   effort_a = -30.0F;
   feedback.current_a = 20.0F;
-  feedback.velocity_rpm = -10.0F;
-  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -59.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+  EXPECT_EQ(atLimit(-10.0F, 10), FaultCode::kNone);
+  EXPECT_EQ(atLimit(-59.0F, 1), FaultCode::kRunaway);
 }
 
 TEST_F(MotionGuardTest, ALoadThatIsLetDownAsAskedIsNoRunaway) {
@@ -403,35 +406,26 @@ TEST_F(MotionGuardTest, ALoadThatIsLetDownAsAskedIsNoRunaway) {
                            Target{.mode = ControlMode::kTotalAngle, .value = -500.0}}) {
     guard.reset();
     target = asked;
-    feedback.velocity_rpm = -1.0F;
-    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-    feedback.velocity_rpm = -99.0F;
-    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+    EXPECT_EQ(atLimit(-1.0F, 10), FaultCode::kNone);
+    EXPECT_EQ(atLimit(-99.0F, 10), FaultCode::kNone);
     target.value = -target.value;
     EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << "from here on it is opposed";
-    feedback.velocity_rpm = -148.0F;
-    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+    EXPECT_EQ(atLimit(-148.0F, 1), FaultCode::kRunaway);
   }
   guard.reset();
   target = {.mode = ControlMode::kVelocity, .value = -30.0};
-  feedback.velocity_rpm = -31.0F;
-  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -80.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway) << "faster than asked";
+  EXPECT_EQ(atLimit(-31.0F, 10), FaultCode::kNone);
+  EXPECT_EQ(atLimit(-80.0F, 1), FaultCode::kRunaway) << "faster than asked";
 }
 
 TEST_F(MotionGuardTest, ASpringThatLetsALoadDownIsNoRunaway) {
   effort_a = 20.0F;
   target = {.mode = ControlMode::kImpedance, .value = -90.0, .stiffness_nm_per_rad = 1.0F};
-  feedback.velocity_rpm = -1.0F;
-  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -70.0F;
-  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
+  EXPECT_EQ(atLimit(-1.0F, 10), FaultCode::kNone);
+  EXPECT_EQ(atLimit(-70.0F, 10), FaultCode::kNone);
   target.stiffness_nm_per_rad = 0.0F;  // asks for no place
-  feedback.velocity_rpm = -1.0F;
-  EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -70.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+  EXPECT_EQ(atLimit(-1.0F, 10), FaultCode::kNone);
+  EXPECT_EQ(atLimit(-70.0F, 1), FaultCode::kRunaway);
 }
 
 TEST_F(MotionGuardTest, ATargetAsksForNoMoreThanTheVelocityLimit) {
@@ -440,12 +434,9 @@ TEST_F(MotionGuardTest, ATargetAsksForNoMoreThanTheVelocityLimit) {
     guard = MotorGuard{{.runaway_rpm = 48.0F, .velocity_limit_rpm = 60.0F}};
     effort_a = 20.0F;
     target = asked;
-    feedback.velocity_rpm = -60.0F;
-    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-    feedback.velocity_rpm = -61.0F;
-    EXPECT_EQ(run(10, kLimitCurrent), FaultCode::kNone);
-    feedback.velocity_rpm = -110.0F;
-    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
+    EXPECT_EQ(atLimit(-60.0F, 10), FaultCode::kNone);
+    EXPECT_EQ(atLimit(-61.0F, 10), FaultCode::kNone);
+    EXPECT_EQ(atLimit(-110.0F, 1), FaultCode::kRunaway);
   }
 }
 
@@ -456,10 +447,8 @@ class OwnLoopGuardTest : public MotionGuardTest {
     guard = MotorGuard{{.runaway_rpm = 48.0F, .runaway_time = 100ms}};
     unit = CommandUnit::kNative;
     feedback.current_a = 20.0F;
-    feedback.velocity_rpm = -1.0F;
-    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
-    feedback.velocity_rpm = -90.0F;
-    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+    EXPECT_EQ(atLimit(-1.0F, 1), FaultCode::kNone);
+    EXPECT_EQ(atLimit(-90.0F, 1), FaultCode::kNone);
   }
 };
 
@@ -481,8 +470,7 @@ TEST_F(OwnLoopGuardTest, AnAngleThatItPassesOverAndOverHidesNoRunaway) {
 
 TEST_F(OwnLoopGuardTest, APushThatIsOverIsNone) {
   EXPECT_EQ(run(98, kLimitCurrent), FaultCode::kNone);
-  feedback.velocity_rpm = -77.0F;
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
+  EXPECT_EQ(atLimit(-77.0F, 1), FaultCode::kNone);
   for (int rpm = -77; rpm < 90; ++rpm) {
     feedback.velocity_rpm = static_cast<float>(rpm);
     EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << "it is brought back";
