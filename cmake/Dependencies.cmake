@@ -1,4 +1,6 @@
 # Every library comes from Debian 12 by name: see scripts/install-deps.sh.
+# A folder on PATH whose neighbour has libraries, as an environment of conda, is not asked for any.
+set(CMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH OFF)
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(yaml-cpp REQUIRED)

@@ -70,6 +70,13 @@ install(TARGETS rc10_embed EXPORT rc10Targets ARCHIVE DESTINATION ${CMAKE_INSTAL
 install(TARGETS rc10_client_lib rc10_client_lib_static EXPORT rc10ClientTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT client NAMELINK_COMPONENT dev
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+if(CMAKE_INTERPROCEDURAL_OPTIMIZATION AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # No archive is made of these: ordinary code, which the linker makes anew, would be compiled for nothing.
+  foreach(target rc10_client rc10_doctor rc10_guard rc10_robot_file rc10_sandbox rc10_gateway rc10_web
+          rc10d rc10-lcm rc10ctl rc10-stop rc10-guard rc10-irq rc10-web rc10-config rc10-sim)
+    target_compile_options(${target} PRIVATE -fno-fat-lto-objects)
+  endforeach()
+endif()
 if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)
   # Sections that only this version of the compiler can read go.
   foreach(archive rc10_embed rc10_client_lib_static)

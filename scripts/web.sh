@@ -36,7 +36,8 @@ exec 9>"$repo/build/.web.lock"
 flock 9
 current=$(inputs)
 if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$current" ] || { [ "$what" = check ] && [ ! -e "$repo/web/node_modules/.package-lock.json" ]; }; then
-    (cd "$repo/web" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
+    # With its own patience of 15 minutes a registry that is silent would hold up the demo.
+    (cd "$repo/web" && npm ci --fetch-timeout=60000 --fetch-retries=1 --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
     # The compiler itself: its package starts it by way of Node, which is not needed for it.
     esbuild=$(find "$repo"/web/node_modules/@esbuild/*/bin -name esbuild | head -n 1)
     new=$(mktemp -d "$repo/build/web.XXXXXX")

@@ -65,16 +65,19 @@ def send(number: signal.Signals, pids: set[int]) -> None:
 
 
 def end_descendants(grace_s: float = 5.0) -> None:
-    """Ends all of them, by force those that are there after this time."""
+    """Ends all of them, by force those that are there after this time.
+
+    A process that one of them starts then is its clean-up, and is asked for nothing.
+    """
     deadline = time.monotonic() + grace_s
-    asked: set[int] = set()
+    asked = False
     while living := {pid for pid, p in descendants().items() if p.state not in "ZX"}:
         left_s = deadline - time.monotonic()
-        send(
-            signal.SIGKILL if left_s <= 0 else signal.SIGTERM,
-            living if left_s <= 0 else living - asked,
-        )
-        asked |= living
+        if left_s <= 0:
+            send(signal.SIGKILL, living)
+        elif not asked:
+            send(signal.SIGTERM, living)
+        asked = True
         wait_for_an_end(living, left_s if left_s > 0 else None)
 
 

@@ -2,6 +2,9 @@
 # shellcheck shell=bash
 
 unset CDPATH # a `cd` that finds a folder by it prints that
+# Python packages of the caller's, which go before those that are pinned here.
+unset PYTHONPATH PYTHONHOME
+export PIP_USER=0
 # Without symbolic links, as CMake and Python name files.
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 

@@ -17,7 +17,6 @@ export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS="second_deadlock_stack=1 suppressions=$repo/tests/tsan.supp"
 
 for preset in asan tsan; do
-    # "tests/all" is Ninja's name for everything in tests/: no programs.
-    if must_build "$preset" tests/all; then ctest_in "$preset"; fi
+    if must_build "$preset" unit_tests; then ctest_in "$preset"; fi
 done
 finish

@@ -19,7 +19,7 @@ MULTICAST = ("239.255.76.67/32", "dev", "lo", "src", "127.0.0.1")
 
 # A shell that runs this in the background ignores Ctrl-C, and programs inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-# The same of nohup's: rc10d, which keeps what it inherits, would outlive its terminal in every test.
+# nohup does so with the end of the terminal, and rc10d keeps what it inherits.
 signal.signal(signal.SIGHUP, signal.default_int_handler)
 # A run that is broken off removes its folders: some lie in memory.
 signal.signal(signal.SIGTERM, signal.default_int_handler)

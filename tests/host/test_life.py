@@ -39,7 +39,7 @@ def test_a_signal_ends_it_soon_and_well(daemon: Daemon, number: signal.Signals) 
     with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):
         daemon.wait_motor("wheel", lambda m: m["velocity_rpm"] > 50, "turns")
         daemon.program.signal(number)
-        assert daemon.program.wait(2.0) == 0
+        assert daemon.program.wait() == 0
     summary = SUMMARY.search(daemon.program.output)
     assert summary, daemon.program.output
     assert int(summary[1]) > 0
@@ -52,7 +52,7 @@ def test_what_a_terminal_sends_to_all_ends_the_gateway_too(
     daemon: Daemon, number: signal.Signals
 ) -> None:
     os.killpg(daemon.program.pid, number)
-    assert daemon.program.wait(2.0) == 0
+    assert daemon.program.wait() == 0
     assert daemon.processes() == {}
 
 

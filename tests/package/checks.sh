@@ -1,6 +1,7 @@
 # Sourced by the runners beside it: the folder of packages they are given.
 # shellcheck shell=bash
 
+unset CDPATH # a `cd` that finds a folder by it prints that
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 packages=$(realpath -m "${1:-$repo/build/packages}")
 # shellcheck source=scripts/lib/checks.sh

@@ -174,6 +174,35 @@ def test_a_part_is_ended_with_what_it_has_started(write_parts: WriteParts, tmp_p
     assert os.waitpid(run_of_parts, 0)[1] == 0
 
 
+def test_what_ends_has_time_to_clear_up(write_parts: WriteParts, tmp_path: Path) -> None:
+    begun, left = tmp_path / "begun", tmp_path / "left"
+    os.mkfifo(begun)
+    left.touch()
+    # The clean-up is a process of its own, and another one ends before it does.
+    clear_up = f"sleep 0.2; sleep 0.2; rm {left}"
+    write_parts(lint=f"trap '{clear_up}; exit' TERM; sleep 30 & echo >{begun}; wait")
+    run_of_parts = os.fork()
+    if run_of_parts == 0:
+        descendants.keep_orphans()
+        run_parts.Run(["lint"], Budget("a test", 1.0, {}, {})).start_what_may()
+        begun.read_text()
+        descendants.end_descendants()
+        os._exit(0)
+    assert os.waitpid(run_of_parts, 0)[1] == 0
+    assert not left.exists()
+
+
+@pytest.mark.parametrize("name", ["RC10_RUN_DIR", "LCM_DEFAULT_URL", "GIT_DIR", "GTEST_FILTER"])
+def test_settings_of_the_caller_are_not_those_of_its_tests(
+    write_parts: WriteParts, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setenv(name, "/nowhere")
+    write_parts(lint=f'echo "${{{name}-0}} passed, 1 failed, 0 skipped"')
+    assert run("lint")["lint"].passed == 0
+    assert run("lint")["lint"].failed == 1
+    assert not run("lint")["lint"].complaint
+
+
 MAIN = """
 import os, pathlib, runpy, sys
 sys.path.insert(0, sys.argv[1])

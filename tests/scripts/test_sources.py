@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,10 @@ def repo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (src / "b.cpp").write_text('#include "app/a.hpp"\n')
     (src / "c.cpp").write_text("int c() { return 0; }\n")
     (tmp_path / ".clang-tidy").write_text("# clang-tidy\nChecks: -*\n")
+    for name in [name for name in os.environ if name.startswith("GIT_")]:  # a hook's
+        monkeypatch.delenv(name)
+    for scope in ("GLOBAL", "SYSTEM"):
+        monkeypatch.setenv(f"GIT_CONFIG_{scope}", os.devnull)
     git = ["git", "-C", str(tmp_path), "-c", "user.name=n", "-c", "user.email=e"]
     for words in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "--message=first"]):
         subprocess.run([*git, *words], check=True)

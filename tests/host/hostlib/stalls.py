@@ -1,33 +1,36 @@
-"""Moments in which the machine stood still or had no core free: by its kernel, and by our clock.
+"""Moments in which the machine stood still or kept a test's processes from its cores.
 
 A test that is interrupted by such a moment may begin anew; no word of the program under test is a
-reason by itself. A plugin of pytest, which tells at the end what began anew.
+reason by itself, nor is a wait of other work. A plugin of pytest, which tells at the end what began
+anew.
 """
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
 from pathlib import Path
 
 import pytest
+from descendants import descendants
 
 # A thread that only sleeps is woken at once where a core runs at all.
 LOOK_S = 0.02
 LATE_S = 0.06
-# So long some process had to wait for a core: a lease of 150 ms may have ended meanwhile.
+# So long one of their threads had to wait for a core: a lease of 150 ms may have ended meanwhile.
 WINDOW_S = 0.2
-WAITING_US = 80_000
-PRESSURE = Path("/proc/pressure/cpu")
+WAITING_NS = 60_000_000
 
 
-def waited_us() -> int:
-    """Time in which some process waited for a core; 0 where nobody counts it (no PSI)."""
-    try:
-        some = PRESSURE.read_text().splitlines()[0]
-    except OSError:
-        return 0
-    return int(some.rpartition("total=")[2])
+def waited_ns() -> dict[Path, int]:
+    """Time for which each thread of a test has waited for a core; none where nobody counts it."""
+    waited = {}
+    for pid in descendants():
+        for thread in Path(f"/proc/{pid}/task").glob("[0-9]*/schedstat"):
+            with contextlib.suppress(OSError, IndexError):  # ended
+                waited[thread] = int(thread.read_text().split()[1])
+    return waited
 
 
 class StallWitness(threading.Thread):
@@ -43,15 +46,17 @@ class StallWitness(threading.Thread):
         self.join()
 
     def run(self) -> None:
-        looks = [(time.monotonic(), waited_us())]
+        looked_s = asked_s = time.monotonic()
+        waited: dict[Path, int] = {}
         while not self._ended.wait(LOOK_S):
             now_s = time.monotonic()
-            if now_s - looks[-1][0] > LATE_S:
+            if now_s - looked_s > LATE_S:
                 self.last_s = now_s
-            looks = [look for look in looks if now_s - look[0] < WINDOW_S]
-            looks.append((now_s, waited_us()))
-            if looks[-1][1] - looks[0][1] > WAITING_US:
-                self.last_s = now_s
+            if now_s - asked_s >= WINDOW_S:
+                before, waited, asked_s = waited, waited_ns(), now_s
+                if any(ns - before.get(thread, ns) > WAITING_NS for thread, ns in waited.items()):
+                    self.last_s = now_s
+            looked_s = time.monotonic()
 
 
 WITNESS = StallWitness()
