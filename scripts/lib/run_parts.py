@@ -44,8 +44,8 @@ JOBS = os.environ.get("RC10_JOBS", "")
 ALL_CORES = min(
     len(os.sched_getaffinity(0)), int(JOBS) if re.fullmatch("[1-9][0-9]*", JOBS) else 1024
 )
-# Another build tree; filters of test runners, which would leave tests out without a word; folders and
-# network of a robot; the repository that git names to a hook, which outranks any -C.
+# Another build tree; filters of test runners, which would leave tests out without a word; folders
+# and network of a robot; the repository that git names to a hook, which outranks any -C.
 THE_CALLERS = re.compile(
     "(RC10_BUILD|RC10_RUN_DIR|RC10_STATE_DIR|LCM_DEFAULT_URL)$|GTEST_|TESTBRIDGE_|PYTEST_|CTEST_"
     "|GIT_(DIR|WORK_TREE|INDEX_FILE|COMMON_DIR|OBJECT_DIRECTORY|PREFIX)$"

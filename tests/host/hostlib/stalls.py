@@ -27,9 +27,9 @@ def waited_ns() -> dict[Path, int]:
     """Time for which each thread of a test has waited for a core; none where nobody counts it."""
     waited = {}
     for pid in descendants():
-        for thread in Path(f"/proc/{pid}/task").glob("[0-9]*/schedstat"):
-            with contextlib.suppress(OSError, IndexError):  # ended
-                waited[thread] = int(thread.read_text().split()[1])
+        with contextlib.suppress(OSError, IndexError):  # ended
+            for thread in Path(f"/proc/{pid}/task").iterdir():
+                waited[thread] = int((thread / "schedstat").read_text().split()[1])
     return waited
 
 
