@@ -32,8 +32,7 @@ void MotorGuard::reset() noexcept {
   begun_ = false;
   fast_samples_ = 0;
   opposed_ = false;
-  gained_rpm_ = 0.0F;
-  runaway_.reset();
+  forgetGain();
   stall_.reset();
   behind_.reset();
   frozen_.reset();
@@ -143,6 +142,7 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
   // A target of the drive's own loop says nothing about its torque: -16 deg from 215 is 199.
   const bool of_effort = seen.unit == CommandUnit::kAmpere || seen.unit == CommandUnit::kVolt;
   const float effort = of_effort ? seen.effort : seen.feedback.current_a;
+  followLoop(of_effort, seen.target.mode);
   const bool opposed =
       (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F && !moveIsAsked(seen);
   if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
@@ -156,11 +156,32 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
     opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));
     gained = std::fabs(velocity_rpm) > opposed_rpm_ + config_.runaway_rpm;
   }
+  if (of_effort) return gained;
+  if (gained) gained_current_a_ = std::max(gained_current_a_, std::fabs(effort));
+  // A newer report that drives it along: the one that opposed was of before.
+  constexpr float kDrives = 0.25F;  // share of that current: noise of a runaway at its no-load speed is less
+  const float along_a = velocity_rpm < 0.0F ? -effort : effort;
+  const bool driven = along_a > kDrives * gained_current_a_;
   // Within a turn the way to an angle turns with the shaft, each half turn of it.
-  const bool keeps =
-      keepsGain(velocity_rpm, gained) && (seen.target.mode == ControlMode::kAngle || !moveIsAsked(seen));
-  if (!keeps) gained_rpm_ = 0.0F;
-  return runaway_.step(keeps, seen.now, of_effort ? Duration{0} : config_.runaway_time);
+  const bool keeps = !driven && keepsGain(velocity_rpm, gained) &&
+                     (seen.target.mode == ControlMode::kAngle || !moveIsAsked(seen));
+  if (!keeps) forgetGain();
+  return runaway_.step(keeps, seen.now, config_.runaway_time) && !(along_a > 0.0F);
+}
+
+void MotorGuard::forgetGain() noexcept {
+  gained_rpm_ = 0.0F;
+  gained_current_a_ = 0.0F;
+  runaway_.reset();
+}
+
+// A gain belongs to the loop that saw it.
+void MotorGuard::followLoop(bool of_effort, ControlMode mode) noexcept {
+  if (of_effort == of_effort_ && mode == loop_mode_) return;
+  if (of_effort != of_effort_) opposed_ = false;
+  of_effort_ = of_effort;
+  loop_mode_ = mode;
+  forgetGain();
 }
 
 bool MotorGuard::keepsGain(float velocity_rpm, bool gained) noexcept {

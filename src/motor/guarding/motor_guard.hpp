@@ -111,6 +111,8 @@ class MotorGuard {
   /// Since it gained it, its speed has neither turned nor come down: what an own current, which back-EMF
   /// lowers, no longer tells.
   [[nodiscard]] bool keepsGain(float velocity_rpm, bool gained) noexcept;
+  void forgetGain() noexcept;
+  void followLoop(bool of_effort, ControlMode mode) noexcept;
   [[nodiscard]] float factorAt(float temperature_c) const noexcept;
   [[nodiscard]] float derate(float temperature_c, MonotonicTime now) noexcept;
 
@@ -126,7 +128,10 @@ class MotorGuard {
   bool unchanged_ = false;
   bool opposed_ = false;
   float opposed_rpm_ = 0.0F;  ///< Speed when torque began to oppose it.
-  float gained_rpm_ = 0.0F;   ///< The fastest since it has run away, with its sign; 0: it has not.
+  bool of_effort_ = true;     ///< The command is a current or a voltage, not a target of the drive's loop.
+  ControlMode loop_mode_ = ControlMode::kCoast;
+  float gained_rpm_ = 0.0F;        ///< The fastest since it has run away, with its sign; 0: it has not.
+  float gained_current_a_ = 0.0F;  ///< The strongest that opposed it meanwhile.
   Lasting runaway_;
   Lasting stall_;
   Lasting behind_;

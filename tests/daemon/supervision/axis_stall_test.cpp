@@ -265,6 +265,26 @@ TEST_P(StallTest, AReversedEncoderIsARunawayInEachLoop) {
   }
 }
 
+// A shove during the loop is over when the next order comes.
+TEST_P(StallTest, AShoveBeforeItIsLetGoIsNoRunaway) {
+  const auto [mode, value] = taskOf(OneMotor{GetParam().keys, GetParam().bus}, GetParam().rpm);
+  if (mode == ControlMode::kCurrent || traitsOf(OneMotor{GetParam().keys, GetParam().bus}).yields) return;
+  for (const int shove_ms : {20, 60, 90}) {
+    SCOPED_TRACE(shove_ms);
+    OneMotor motor = motorWith("");
+    motor.follow(mode, 0.0, 100);
+    for (int i = 0; i < shove_ms && motor.seen().fault == FaultCode::kNone; ++i) {
+      load(motor, &sim::MotorLoad::load_torque_nm, 3.0 * fullNm(motor));
+      motor.follow(mode, 0.0, 1);
+    }
+    if (motor.seen().fault != FaultCode::kNone) break;  // a tick after the limit where rc10d computes it
+    load(motor, &sim::MotorLoad::load_torque_nm, 0.0);
+    motor.follow(ControlMode::kCoast, 0.0, 200);
+    EXPECT_EQ(motor.seen().fault, FaultCode::kNone);
+    EXPECT_EQ(motor.seen().status, MotorStatus::kActive);
+  }
+}
+
 TEST_P(StallTest, LettingAHeavyLoadDownAsAskedIsNoRunaway) {
   OneMotor motor = motorWith("");
   if (!traitsOf(motor).limit_by_report || !traitsOf(motor).modes.contains(ControlMode::kVelocity)) return;

@@ -1,55 +1,15 @@
-#include "motor/guarding/motor_guard.hpp"
-
 #include <array>
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "motor/guarding/guard_bench.hpp"
+
 namespace rc10::test::motor_guard_test {
 namespace {
 
-using namespace std::chrono_literals;
-
-class MotorGuardTest : public ::testing::Test {
- protected:
-  static MotorFeedback seen(float velocity_rpm, float temperature_c) {
-    MotorFeedback feedback;
-    feedback.velocity_rpm = velocity_rpm;
-    feedback.temperature_c = temperature_c;
-    return feedback;
-  }
-  /// One sample and one tick, a millisecond later.
-  MotorGuard::Verdict step(std::uint32_t limits = 0) {
-    ++feedback.samples;
-    now += 1ms;
-    return look(limits);
-  }
-  /// One tick without a new sample.
-  MotorGuard::Verdict tickOnly() {
-    now += 1ms;
-    return look(0);
-  }
-  MotorGuard::Verdict look(std::uint32_t limits) {
-    return guard.step({.feedback = feedback,
-                       .target = target,
-                       .effort = effort_a,
-                       .unit = unit,
-                       .limits = limits,
-                       .now = now});
-  }
-
-  MonotonicTime now{1000s};
-  MotorFeedback feedback = seen(100.0F, 30.0F);
-  Target target;
-  float effort_a = 0.0F;
-  CommandUnit unit = CommandUnit::kAmpere;
-  MotorGuard guard{{.overspeed_rpm = 700.0F,
-                    .temperature_derate_c = 80.0F,
-                    .temperature_trip_c = 100.0F,
-                    .stall_time = 200ms,
-                    .stall_rpm = 10.0F}};
-};
+using namespace guard_bench;
 
 TEST_F(MotorGuardTest, FindsNothingWrongWithAMotorThatTurns) {
   for (int i = 0; i < 1000; ++i) {
@@ -254,31 +214,6 @@ TEST_F(MotorGuardTest, FastSamplesOfBeforeDoNotCount) {
   EXPECT_EQ(step().fault, FaultCode::kNone);
 }
 
-class MotionGuardTest : public MotorGuardTest {
- protected:
-  MotionGuardTest() {
-    guard = MotorGuard{{.following_error_deg = 15.0,
-                        .following_error_time = 100ms,
-                        .encoder_jumps = true,
-                        .frozen_a = 1.0F,
-                        .runaway_rpm = 48.0F}};
-    feedback.current_a = 0.0F;
-    feedback.total_angle_deg = 0.0;
-  }
-  /// Runs this number of samples; returns the first fault.
-  FaultCode run(int samples, std::uint32_t limits = 0) {
-    for (int i = 0; i < samples; ++i) {
-      if (const auto fault = step(limits).fault; fault != FaultCode::kNone) return fault;
-    }
-    return FaultCode::kNone;
-  }
-  /// The same at its current limit with this speed.
-  FaultCode atLimit(float velocity_rpm, int samples) {
-    feedback.velocity_rpm = velocity_rpm;
-    return run(samples, kLimitCurrent);
-  }
-};
-
 TEST_F(MotionGuardTest, FarFromTheTargetForLongEnoughIsAFault) {
   target = {.mode = ControlMode::kTotalAngle, .value = 16.0};
   EXPECT_EQ(run(100), FaultCode::kNone);
@@ -438,49 +373,6 @@ TEST_F(MotionGuardTest, ATargetAsksForNoMoreThanTheVelocityLimit) {
     EXPECT_EQ(atLimit(-61.0F, 10), FaultCode::kNone);
     EXPECT_EQ(atLimit(-110.0F, 1), FaultCode::kRunaway);
   }
-}
-
-/// In a loop of the drive a runaway keeps what it has gained.
-class OwnLoopGuardTest : public MotionGuardTest {
- protected:
-  OwnLoopGuardTest() {
-    guard = MotorGuard{{.runaway_rpm = 48.0F, .runaway_time = 100ms}};
-    unit = CommandUnit::kNative;
-    feedback.current_a = 20.0F;
-    EXPECT_EQ(atLimit(-1.0F, 1), FaultCode::kNone);
-    EXPECT_EQ(atLimit(-90.0F, 1), FaultCode::kNone);
-  }
-};
-
-TEST_F(OwnLoopGuardTest, BackEmfThatTakesTheCurrentFromItsLimitHidesNoRunaway) {
-  feedback.current_a = 1.0F;
-  EXPECT_EQ(run(99, 0), FaultCode::kNone);
-  EXPECT_EQ(run(1, 0), FaultCode::kRunaway);
-}
-
-// Each half turn the shorter way to an angle is the other one.
-TEST_F(OwnLoopGuardTest, AnAngleThatItPassesOverAndOverHidesNoRunaway) {
-  target = {.mode = ControlMode::kAngle, .value = 90.0};
-  for (int i = 0; i < 99; ++i) {
-    feedback.angle_deg = i % 20 < 10 ? 100.0F : 80.0F;
-    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone);
-  }
-  EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kRunaway);
-}
-
-TEST_F(OwnLoopGuardTest, APushThatIsOverIsNone) {
-  EXPECT_EQ(run(98, kLimitCurrent), FaultCode::kNone);
-  EXPECT_EQ(atLimit(-77.0F, 1), FaultCode::kNone);
-  for (int rpm = -77; rpm < 90; ++rpm) {
-    feedback.velocity_rpm = static_cast<float>(rpm);
-    EXPECT_EQ(run(1, kLimitCurrent), FaultCode::kNone) << "it is brought back";
-  }
-}
-
-TEST_F(OwnLoopGuardTest, ASpeedThatIsAskedForMeanwhileIsNone) {
-  EXPECT_EQ(run(50, kLimitCurrent), FaultCode::kNone);
-  target = {.mode = ControlMode::kVelocity, .value = -100.0};
-  EXPECT_EQ(run(200, kLimitCurrent), FaultCode::kNone);
 }
 
 TEST_F(MotionGuardTest, AtItsThresholdNothingIsWrong) {
