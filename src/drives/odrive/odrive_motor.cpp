@@ -24,6 +24,12 @@ constexpr Duration kOdriveRestartSilence = milliseconds{200};
 constexpr int kRestartPeriods = 5;
 // Telemetry may come once a second; what is older is not known any more.
 constexpr Duration kTelemetryLife = milliseconds{2500};
+constexpr int kTelemetryPeriods = 3;
+
+Duration currentPatience(const OwnValues& own) noexcept {
+  const int hz = own.integer("telemetry_hz");
+  return hz > 0 ? std::max<Duration>(kTelemetryPeriods * periodOf(hz), kTelemetryLife) : Duration::zero();
+}
 
 constexpr int kModeRepeats = 3;
 constexpr int kClearRepeats = 2;
@@ -50,6 +56,7 @@ ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& tra
                                                            : OdriveFirmware::k06),
       iq_sign_(settings.own.flag("iq_reversed") ? -1.0F : 1.0F),
       filter_count_(firmware_ == OdriveFirmware::k06 ? 5 : 4),
+      current_patience_(currentPatience(settings.own)),
       enabling_(kAskAgain, kMostAsks),
       input_(odrive::setInputTorque(node_, 0.0F)) {
   using enum odrive::Message;
@@ -82,9 +89,16 @@ FrameVerdict ODrive_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
 void ODrive_Motor::hear(MonotonicTime received) noexcept {
   const Duration longest = std::max<Duration>(kOdriveRestartSilence, kRestartPeriods * feedbackPeriod());
-  if (heard_ && received - heard_at_ > longest) forgetPosition();
+  const bool silent = heard_ && received - heard_at_ > longest;
+  if (silent) forgetPosition();
+  if (silent || !heard_) current_due_from_ = received;
   heard_ = true;
   heard_at_ = received;
+}
+
+// Without it no guard sees anything. By frames of the drive, so that a silence of the bus is none of it.
+bool ODrive_Motor::lacksCurrent() const noexcept {
+  return current_patience_ > Duration::zero() && heard_at_ - current_due_from_ > current_patience_;
 }
 
 void ODrive_Motor::forgetPosition() noexcept {
@@ -165,6 +179,7 @@ FrameVerdict ODrive_Motor::takeTelemetry(const CanFrame& frame) noexcept {
           : measured * iq_sign_ * direction();
   feedback_.torque_nm = saturate(feedback_.current_a * torqueNmPerA());
   current_at_ = frame.received;
+  current_due_from_ = frame.received;
   return FrameVerdict::kAccepted;
 }
 
@@ -325,7 +340,7 @@ bool ODrive_Motor::stateSince(odrive::AxisState state, MonotonicTime since) cons
 
 void ODrive_Motor::runEnabling(const Tick& tick) noexcept {
   if (begins()) enabling_.begin(Step::kToIdle);
-  const bool well = !heartbeat_ || odriveErrors(firmware_, *heartbeat_) == 0;
+  const bool well = !lacksCurrent() && (!heartbeat_ || odriveErrors(firmware_, *heartbeat_) == 0);
   if (enabling_.awaits(Step::kToIdle)) {
     if (!well) {
       enabling_.fail();
@@ -353,6 +368,8 @@ DriveComplaint ODrive_Motor::complaint() const noexcept {
     if (reported.fault != FaultCode::kNone) return reported;
   }
   if (stopped_) return {.fault = FaultCode::kDriveStopped, .native_code = 0};
+  if ((obeying() || enabling()) && lacksCurrent())
+    return {.fault = FaultCode::kDriveSetting, .native_code = kNoCurrentComplaint};
   return {};
 }
 

@@ -19,6 +19,9 @@ namespace rc10 {
 /// clears no errors. A mode that changes later is told three times, since nothing reports it back.
 class ODrive_Motor : public SoloMotor {
  public:
+  /// Native code of kDriveSetting: telemetry_hz is written, and no current comes.
+  static constexpr std::uint32_t kNoCurrentComplaint = 0x8000'0000;
+
   /// `settings` has passed its family's check().
   ODrive_Motor(const MotorSettings& settings, const MotorTraits& traits);
 
@@ -45,6 +48,8 @@ class ODrive_Motor : public SoloMotor {
   FrameVerdict takeEstimates(const CanFrame& frame) noexcept;
   FrameVerdict takeTelemetry(const CanFrame& frame) noexcept;
   void hear(MonotonicTime received) noexcept;
+  /// It has been heard for long enough without the current that telemetry_hz promises.
+  [[nodiscard]] bool lacksCurrent() const noexcept;
   void forgetPosition() noexcept;
   [[nodiscard]] bool isJump(MonotonicTime received, double turns, double turns_per_s) const noexcept;
 
@@ -77,6 +82,8 @@ class ODrive_Motor : public SoloMotor {
   double turns_ = 0.0;
   double turns_per_s_ = 0.0;
   MonotonicTime current_at_;
+  Duration current_patience_;       ///< 0: none is due.
+  MonotonicTime current_due_from_;  ///< When one came last, or the drive was heard anew.
   MonotonicTime temperature_at_;
   MonotonicTime voltage_at_;
 
