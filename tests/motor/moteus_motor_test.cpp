@@ -233,9 +233,12 @@ TEST(MoteusMotor, WhatBoundsItsOutputIsALimitAndNoFault) {
   MoteusBench bench;
   ASSERT_TRUE(bench.enable());
   bench.motor.order(FrameKind::kIdle);
-  bench.answer({.mode = moteus::Mode::kPosition, .fault = 100});
-  EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kNone);
-  EXPECT_EQ(bench.motor.limits(), static_cast<std::uint32_t>(kLimitTemperature));
+  // Derated by heat, the current is at its limit all the same.
+  for (const std::uint32_t native : {100U, 101U}) {
+    bench.answer({.mode = moteus::Mode::kPosition, .fault = static_cast<int>(native)});
+    EXPECT_EQ(bench.motor.complaint().fault, FaultCode::kNone);
+    EXPECT_EQ(bench.motor.limits(), kLimitTemperature | kLimitCurrent);
+  }
   bench.answer({.mode = moteus::Mode::kPosition, .fault = 104});
   EXPECT_EQ(bench.motor.limits(), 0U);
 }

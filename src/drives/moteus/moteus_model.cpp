@@ -33,12 +33,14 @@ constexpr std::array kMoteusFaults{
 
 struct NativeLimit {
   std::uint32_t native;
-  LimitFlag limit;
+  std::uint32_t limits;
 };
-// 104 and 105, flux braking and field weakening, bound nothing.
+// 100 and 101 stand for 99 while heat derates the limit (fw/bldc_servo.cc, where the current is cut off). 104
+// and 105, flux braking and field weakening, bound nothing.
+constexpr std::uint32_t kDerated = kLimitTemperature | kLimitCurrent;
 constexpr std::array kLimits{
-    NativeLimit{96, kLimitVelocity}, NativeLimit{97, kLimitCurrent},      NativeLimit{98, kLimitCurrent},
-    NativeLimit{99, kLimitCurrent},  NativeLimit{100, kLimitTemperature}, NativeLimit{101, kLimitTemperature},
+    NativeLimit{96, kLimitVelocity}, NativeLimit{97, kLimitCurrent}, NativeLimit{98, kLimitCurrent},
+    NativeLimit{99, kLimitCurrent},  NativeLimit{100, kDerated},     NativeLimit{101, kDerated},
     NativeLimit{102, kLimitCurrent}, NativeLimit{103, kLimitAngle},
 };
 
@@ -59,7 +61,7 @@ FaultCode moteusFault(std::uint32_t native) noexcept { return faultOfCode(kMoteu
 
 std::uint32_t moteusLimit(std::uint32_t native) noexcept {
   for (const auto& row : kLimits) {
-    if (row.native == native) return row.limit;
+    if (row.native == native) return row.limits;
   }
   return 0;
 }
