@@ -40,6 +40,7 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
       gear_ratio_(gearRatioOf(settings, traits)),
       drive_per_output_(settings.direction < 0 ? -drive_turns : drive_turns),
       effort_limit_(effortLimitOf(settings, traits.effort_full_scale)),
+      effort_limit_given_(settings.effort_limit > 0.0F),
       velocity_limit_rpm_(settings.velocity_limit_rpm),
       torque_nm_per_a_(traits.torque_nm_per_a * static_cast<float>(gear_ratio_ / traits.gear_ratio)),
       tick_period_(periodOf(settings.tick_hz)),
@@ -140,10 +141,16 @@ Target SoloMotor::resolved() noexcept {
   return target;
 }
 
+double SoloMotor::reportable(float limit_a) const noexcept {
+  return static_cast<double>(traits_.signed_a > 0.0F ? std::min(limit_a, traits_.signed_a) : limit_a);
+}
+
 bool SoloMotor::currentAtLimit(double count_a) const noexcept {
-  const auto limit_a = static_cast<double>(effortLimit());
-  const auto full_a = static_cast<double>(traits_.signed_a);
-  return currentAtLimit(full_a > 0.0 ? std::min(limit_a, full_a) : limit_a, count_a);
+  return currentAtLimit(reportable(effortLimit()), count_a);
+}
+
+bool SoloMotor::ownLoopAtLimit(double count_a) const noexcept {
+  return effort_limit_given_ && currentAtLimit(reportable(effort_limit_), count_a);
 }
 
 bool SoloMotor::currentAtLimit(double limit_a, double count_a) const noexcept {

@@ -31,7 +31,7 @@ constexpr float kRest = 0.05F;
 // Share of the current limit: a drive that repeats its last command may exceed it.
 constexpr float kRestOfLimit = 0.5F;
 constexpr Duration kRestTime = std::chrono::milliseconds{100};
-constexpr int kFastCurrentHz = 50;
+constexpr Duration kFastCurrent = std::chrono::milliseconds{20};
 // A report stands until the next: one alone may be of before.
 constexpr int kReports = 2;
 
@@ -75,6 +75,14 @@ void checkFollowingError(MotorParse& in) {
       "needs angle_slew_deg_per_s: without it every step of the target would be a fault; add it");
 }
 
+/// Period of the reported current. A drive that is asked tells it in each answer, its angle perhaps not.
+Duration currentPeriod(const MotorParse& in) {
+  if (in.traits.signed_current_hz > 0) return periodOf(in.traits.signed_current_hz);
+  const MotorSettings& motor = in.draft.config.settings;
+  if (in.traits.asked) return motor.command_divider * periodOf(motor.tick_hz);
+  return periodOf(std::max(motor.feedback_hz > 0 ? motor.feedback_hz : in.traits.feedback_hz, 1));
+}
+
 void checkStall(MotorParse& in) {
   const auto given = in.settings.find("stall_ms");
   const auto stall_ms =
@@ -88,13 +96,13 @@ void checkStall(MotorParse& in) {
                           "there");
     return;
   }
-  const int current_hz = in.traits.signed_current_hz;
-  if (current_hz <= 0) return;  // its current comes with its speed
-  const int least_ms = kReports * 1000 / current_hz;
-  if (stall_ms.count() >= least_ms) return;
+  const Duration period = currentPeriod(in);
+  const auto least = std::chrono::ceil<std::chrono::milliseconds>(kReports * period);
+  if (stall_ms >= least) return;
   in.problems.error(given->place(), given->path,
-                    given->text() + " ms is shorter than two reports of the current, which comes " +
-                        std::to_string(current_hz) + " times a second; write " + std::to_string(least_ms) +
+                    given->text() + " ms is shorter than two reports of the current, which comes every " +
+                        numberText(std::chrono::duration<double, std::milli>(period).count()) +
+                        " ms; write " + std::to_string(least.count()) +
                         " or more, or let it come more often");
 }
 
@@ -120,11 +128,8 @@ void readRunaway(MotorParse& in) {
   const bool guessed = !(in.traits.no_load_rpm > 0.0F) && in.noLoadRpm() > 0.0;
   guard.runaway_rpm =
       static_cast<float>(std::max(kRunaway * in.noLoadRpm(), guessed ? kLeastUnknownRunawayRpm : 0.0));
-  if (in.traits.limit_by_report) {
-    const int current_hz = in.traits.signed_current_hz;
-    const auto reports = current_hz > 0 ? kReports * periodOf(current_hz) : Duration{0};
-    guard.runaway_time = std::max(kReportedRunawayTime, reports);
-  }
+  if (in.traits.limit_by_report)
+    guard.runaway_time = std::max(kReportedRunawayTime, kReports * currentPeriod(in));
   guard.velocity_limit_rpm = in.motor().velocity_limit_rpm;
   if (in.traits.yields) guard.runaway_rpm = 0.0F;
   in.settings.read("runaway_rpm", guard.runaway_rpm);
@@ -138,11 +143,8 @@ void readRest(MotorParse& in) {
   const float limit_a = in.byVoltage() ? 0.0F : in.motor().effort_limit;
   if (limit_a > 0.0F) rest.current_a = std::min(rest.current_a, kRestOfLimit * limit_a);
   in.settings.read("rest_current_a", rest.current_a);
-  const int feedback_hz =
-      in.motor().feedback_hz > 0 ? in.motor().feedback_hz : std::max(in.traits.feedback_hz, 1);
-  const int current_hz = in.traits.signed_current_hz > 0 ? in.traits.signed_current_hz : feedback_hz;
   rest.time = kRestTime;
-  if (current_hz < kFastCurrentHz) rest.time += std::chrono::nanoseconds{2'000'000'000 / current_hz};
+  if (const auto period = currentPeriod(in); period > kFastCurrent) rest.time += kReports * period;
   if (const auto given_ms = in.settings.number("rest_ms"))
     rest.time = std::chrono::milliseconds{static_cast<int>(*given_ms)};
 }

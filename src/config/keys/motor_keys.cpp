@@ -151,7 +151,8 @@ constexpr std::array kMotorKeys{
         .about = "This time at the current or voltage limit without turning (2 % of the no-load speed, or of "
                  "`velocity_limit_rpm` where that is not known; without either 10 rpm) is a stall. 0: not "
                  "watched. Not where that limit is not seen: Damiao control velocity and position_velocity, "
-                 "CubeMars servo, ODrive without telemetry_hz. A VESC needs motor_current_max_a."},
+                 "CubeMars servo, ODrive without telemetry_hz. A VESC needs motor_current_max_a, LK-Tech and "
+                 "MyActuator current_limit_a. At least two reports of the current."},
     Key{.name = "stall_action",
         .kind = kText,
         .choices = stallActions,
@@ -345,8 +346,9 @@ constexpr std::array kMotorKeys{
         .range = {.min = 1, .max = 100},
         .needs = kNeedsOwnFrames,
         .about = "The drive gets a command in every n-th tick; the motors of a bus take turns. A drive "
-                 "that only answers sends its feedback at that rate. LK-Tech and MyActuator: at most 50 ms "
-                 "between two commands. Not for motors that share frames (DJI). Default: 1."},
+                 "that only answers sends its feedback at that rate: with one answer lost its silence must "
+                 "not look like a restart, so at 1 kHz at most 49 for LK-Tech and MyActuator, 99 for "
+                 "RobStride, less for a fast Damiao. Not for motors that share frames (DJI). Default: 1."},
     Key{.name = "feedback_timeout_ms",
         .kind = kInteger,
         .unit = "ms",

@@ -69,7 +69,6 @@ class LktechFamily final : public MotorFamily {
     traits.frozen_a = static_cast<float>(model.amperes_per_raw * lktech::kRawCurrentMax);
     traits.signed_a = traits.frozen_a;
     traits.limit_by_report = true;
-    traits.own_loops = ModeSet{ControlMode::kAngle, ControlMode::kTotalAngle};
     traits.asked = true;
     // After a shorter silence the encoder shows which way it went.
     traits.restart_silence = std::chrono::milliseconds{100};
@@ -78,7 +77,10 @@ class LktechFamily final : public MotorFamily {
     traits.frames = kLktechFrames;
     traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                            ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
-    if (own.flag("group")) {
+    if (!own.flag("group")) {
+      traits.own_limit_key = "current_limit_a";
+      traits.own_loops = ModeSet{ControlMode::kAngle, ControlMode::kTotalAngle};
+    } else {
       traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent};
       traits.frames.brake = Provision::kUnsupported;
       traits.frames.hold = Provision::kUnsupported;

@@ -265,7 +265,7 @@ void LKTech_Motor::followAngle(double total_angle_deg) noexcept {
   const double rotor_deg = std::clamp(wanted_deg, -kReachDeg, kReachDeg);
   const bool reaches = rotor_deg == wanted_deg;
   if (!reaches) limits_ |= kLimitAngle;
-  if (currentAtLimit(amperes_per_raw_)) limits_ |= kLimitCurrent;
+  if (ownLoopAtLimit(amperes_per_raw_)) limits_ |= kLimitCurrent;
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s = limit_rpm > 0.0
                                  ? std::abs(toDrive(limit_rpm)) * traits().gear_ratio * kDegPerSPerRpm

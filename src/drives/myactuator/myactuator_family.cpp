@@ -79,6 +79,7 @@ class MyactuatorFamily final : public MotorFamily {
     traits.frozen_a = model.peak_current_a;
     traits.signed_a = traits.frozen_a;
     traits.limit_by_report = true;
+    traits.own_limit_key = "current_limit_a";
     traits.own_loops = ModeSet{ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle};
     traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;

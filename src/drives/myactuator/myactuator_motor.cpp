@@ -270,7 +270,7 @@ void MyActuator_Motor::followCurrent(const Target& target) noexcept {
 void MyActuator_Motor::followVelocity(double output_rpm) noexcept {
   constexpr double kFastestDegS = 2147483647.0 * myactuator::kDegPerRaw;
   const double rpm = rpmWithinLimit(output_rpm, kFastestDegS / (std::abs(toDrive(1.0)) * kDegPerSPerRpm));
-  if (currentAtLimit(myactuator::kAmperesPerRaw)) limits_ |= kLimitCurrent;
+  if (ownLoopAtLimit(myactuator::kAmperesPerRaw)) limits_ |= kLimitCurrent;
   setCommand(rpm, CommandUnit::kNative);
   sendCommand(myactuator::velocityCommand(id_, toDrive(rpm) * kDegPerSPerRpm));
 }
@@ -290,7 +290,7 @@ void MyActuator_Motor::followAngle(double total_angle_deg) noexcept {
   const auto limit_rpm = static_cast<double>(velocityLimitRpm());
   const double limit_deg_s =
       limit_rpm > 0.0 ? std::abs(toDrive(limit_rpm)) * kDegPerSPerRpm : kMyactuatorNoLimitDegS;
-  if (currentAtLimit(myactuator::kAmperesPerRaw)) limits_ |= kLimitCurrent;
+  if (ownLoopAtLimit(myactuator::kAmperesPerRaw)) limits_ |= kLimitCurrent;
   const double away_deg = drive_deg - drive_deg_of(feedback_.total_angle_deg);
   setCommand(reaches ? total_angle_deg : feedback_.total_angle_deg + toOutput(away_deg),
              CommandUnit::kNative);

@@ -11,8 +11,39 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::UnorderedElementsAre;
 using namespace std::chrono_literals;
+
+// Keys that a family's motors need beside model and id.
+std::string needsOf(std::string_view family) {
+  if (family == "Damiao") return ", master_id: 17";
+  if (family == "VESC") return ", pole_pairs: 7, velocity_limit_rpm: 600";
+  if (family == "moteus") return ", motor_kv_rpm_per_v: 100";
+  if (family == "ODrive")
+    return ", torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600";
+  if (family == "LK-Tech" || family == "LKTech") return ", velocity_limit_rpm: 300";
+  return "";
+}
+
+MotorConfig watchedMotor(const std::string& keys) {
+  const std::string bus = keys.find("moteus") == std::string::npos ? "" : "    data_bitrate: 5000000\n";
+  const auto outcome = parseRobotConfig("robot: r\nbuses:\n  - name: b\n    type: sim\n" + bus +
+                                            "    motors:\n      - {name: a, id: 1, " + keys + "}\n",
+                                        "r.yaml");
+  EXPECT_TRUE(outcome.config) << keys << outcome.errorText();
+  return outcome.config.value().buses.at(0).motors.at(0);
+}
+
+/// Reason of the one error, without its place.
+std::string reasonOf(const std::string& motor) {
+  const auto errors = errorsOf(robotWith("{name: a, " + motor + "}"));
+  if (errors.empty()) return "";
+  EXPECT_EQ(errors.size(), 1U);
+  const std::string key = ".stall_ms: ";
+  const auto at = errors.front().find(key);
+  return at == std::string::npos ? errors.front() : errors.front().substr(at + key.size());
+}
 
 TEST(MotorGuardRules, WithoutKeysAMotorIsWatchedByItsModel) {
   const auto wheel = motorOf("{name: a, model: M3508, id: 1}").guard;
@@ -57,6 +88,68 @@ TEST(MotorGuardRules, ARunawayOfADrivesOwnLoopLastsForTwoReportsOfItsCurrent) {
   EXPECT_EQ(slow.runaway_rpm, 60.0F) << "its no-load speed is not known";
   EXPECT_EQ(motorOf(odrive + "900, telemetry_hz: 100}").guard.runaway_time, 100ms);
   EXPECT_EQ(motorOf(odrive + "900, telemetry_hz: 100}").guard.runaway_rpm, 90.0F);
+}
+
+// Or of its feedback, where the current comes with that.
+TEST(MotorGuardRules, TwoReportsAreAwaitedHoweverTheCurrentComes) {
+  const std::string vesc =
+      "model: VESC, pole_pairs: 7, angle: none, velocity_limit_rpm: 600, motor_current_max_a: 40, "
+      "feedback_hz: ";
+  EXPECT_EQ(watchedMotor(vesc + "5").guard.runaway_time, 400ms);
+  EXPECT_EQ(watchedMotor(vesc + "50").guard.runaway_time, 100ms);
+  EXPECT_EQ(reasonOf(vesc + "5, id: 1, stall_ms: 150"),
+            "150 ms is shorter than two reports of the current, which comes every 200 ms; write 400 or "
+            "more, or let it come more often");
+  EXPECT_EQ(reasonOf(vesc + "5, id: 1, stall_ms: 400"), "");
+  for (const std::string asked : {"model: moteus, motor_kv_rpm_per_v: 100, watchdog_ms: 300",
+                                  "model: RS00, watchdog_ms: 1000, control: velocity",
+                                  "model: RS00, watchdog_ms: 1000, control: operation"}) {
+    SCOPED_TRACE(asked);
+    const bool moteus = asked.find("moteus") != std::string::npos;
+    // A RobStride that is asked so seldom may have restarted.
+    const int divider = moteus ? 100 : 80;
+    const std::string keys = asked + ", command_divider: " + std::to_string(divider);
+    const auto two = 2 * std::chrono::milliseconds{divider};
+    const auto motor = watchedMotor(keys + ", stall_ms: " + std::to_string(two.count()));
+    EXPECT_EQ(motor.guard.stall_time, two);
+    if (motor.traits().limit_by_report) {
+      EXPECT_EQ(motor.guard.runaway_time, two);
+    }
+    if (!moteus) {
+      EXPECT_THAT(reasonOf(keys + ", id: 1, stall_ms: " + std::to_string(two.count() - 1)),
+                  HasSubstr("shorter than two reports"));
+    }
+  }
+  // Its angles come more seldom than its currents.
+  EXPECT_EQ(watchedMotor("model: RMD-X8-20, angle_divider: 100, current_limit_a: 5").guard.runaway_time,
+            100ms);
+}
+
+// Where its loops obey the drive's own limit, which no frame carries, a key tells it.
+TEST(MotorGuardRules, NoFamilyTakesTheEndOfAFieldForTheLimitOfTheDrivesLoops) {
+  std::vector<std::string> judged;
+  for (const auto& entry : builtInFamilies()) {
+    const std::string name{entry.family->name()};
+    const std::string keys = "model: " + std::string{entry.family->models().front()} + needsOf(name);
+    const auto traits = watchedMotor(keys).traits();
+    if (traits.own_loops.bits() == 0 || !traits.unseen_limit_remedy.empty()) continue;
+    judged.push_back(name);
+    const std::string key{traits.own_limit_key};
+    ASSERT_NE(key, "") << name;
+    const auto warnedOf = [](const std::string& motor) {
+      const auto outcome = parseRobotConfig(robotWith("{name: a, id: 1, " + motor + "}"), "hero.yaml");
+      std::string texts;
+      for (const auto& each : outcome.warnings) texts += each.text;
+      return texts;
+    };
+    EXPECT_THAT(reasonOf(keys + ", id: 1, stall_ms: 300"),
+                HasSubstr("needs " + key + ": a stall is a current at the limit that the drive itself has"));
+    EXPECT_EQ(reasonOf(keys + ", id: 1, stall_ms: 300, " + key + ": 5"), "");
+    EXPECT_THAT(warnedOf(keys + ", runaway_rpm: 20"), HasSubstr("is not known; write " + key));
+    EXPECT_THAT(warnedOf(keys + ", runaway_rpm: 20, " + key + ": 5"), Not(HasSubstr("is not known")));
+  }
+  EXPECT_THAT(judged, UnorderedElementsAre("VESC", "LK-Tech", "MyActuator"));
+  EXPECT_EQ(reasonOf("model: LK-MF9025, id: 1, group: true, stall_ms: 300"), "") << "currents alone";
 }
 
 TEST(MotorGuardRules, ALoopThatYieldsHasNoRunaway) {
@@ -110,26 +203,6 @@ TEST(MotorGuardRules, OverSpeedMustBeAboveWhatMayBeAskedFor) {
   EXPECT_THAT(
       errorsOf(robotWith("{name: a, model: M3508, id: 1, velocity_limit_rpm: 300, overspeed_rpm: 301}")),
       IsEmpty());
-}
-
-// Keys that a family's motors need beside model and id.
-std::string needsOf(std::string_view family) {
-  if (family == "Damiao") return ", master_id: 17";
-  if (family == "VESC") return ", pole_pairs: 7, velocity_limit_rpm: 600";
-  if (family == "moteus") return ", motor_kv_rpm_per_v: 100";
-  if (family == "ODrive")
-    return ", torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600";
-  if (family == "LK-Tech" || family == "LKTech") return ", velocity_limit_rpm: 300";
-  return "";
-}
-
-MotorConfig watchedMotor(const std::string& keys) {
-  const std::string bus = keys.find("moteus") == std::string::npos ? "" : "    data_bitrate: 5000000\n";
-  const auto outcome = parseRobotConfig("robot: r\nbuses:\n  - name: b\n    type: sim\n" + bus +
-                                            "    motors:\n      - {name: a, id: 1, " + keys + "}\n",
-                                        "r.yaml");
-  EXPECT_TRUE(outcome.config) << keys << outcome.errorText();
-  return outcome.config.value().buses.at(0).motors.at(0);
 }
 
 TEST(MotorGuardRules, NoDefaultOfOverSpeedLiesBeyondWhatADriveReports) {
@@ -188,16 +261,6 @@ TEST(MotorGuardRules, AMotorThatReportsNoTemperatureHasNoLimitOfIt) {
                   "remove it"));
 }
 
-/// Reason of the one error, without its place.
-std::string reasonOf(const std::string& motor) {
-  const auto errors = errorsOf(robotWith("{name: a, " + motor + "}"));
-  if (errors.empty()) return "";
-  EXPECT_EQ(errors.size(), 1U);
-  const std::string key = ".stall_ms: ";
-  const auto at = errors.front().find(key);
-  return at == std::string::npos ? errors.front() : errors.front().substr(at + key.size());
-}
-
 std::string unseen(const std::string& model, const std::string& remedy) {
   return "needs to see when the current is at its limit, which the " + model +
          ", as it is configured, does not show: " + remedy + ", or remove it";
@@ -236,7 +299,7 @@ TEST(MotorGuardRules, AStallIsLongerThanTwoReportsOfTheCurrent) {
       "600, "
       "telemetry_hz: 5, stall_ms: ";
   EXPECT_EQ(reasonOf(odrive + "399"),
-            "399 ms is shorter than two reports of the current, which comes 5 times a second; write 400 or "
+            "399 ms is shorter than two reports of the current, which comes every 200 ms; write 400 or "
             "more, or let it come more often");
   EXPECT_EQ(reasonOf(odrive + "400"), "");
   EXPECT_EQ(reasonOf(odrive + "0"), "");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "daemon/exchange/events.hpp"
 #include "daemon/one_motor_robot.hpp"
@@ -334,6 +335,45 @@ TEST_F(ReducedModeTest, AVescThatLetsGoBelowItsOwnMinimumIsNotToldMoreAndMore) {
   tick();
   EXPECT_LT(fastestWhile({.mode = ControlMode::kTotalAngle, .value = 1000.0}, 2000), 25.0F);
   EXPECT_LE(robot->motor(kWheel).command_value, 20.0F);
+}
+
+/// Holds an angle against a load of 4 A, of the 7 A that the drive's own loop may take.
+class OwnLoopReducedTest : public ReducedModeTest {
+ protected:
+  void hold(const std::string& model, const std::string& keys) {
+    start(keys + "current_limit_a: 7, reduced_current_a: 3, stall_ms: 300, zero: power_on", model);
+    auto& bus = robot->simBus();
+    const auto& parameters = bus.motor(0).parameters();
+    auto load = bus.drive(0).load();
+    load.load_torque_nm = static_cast<float>(4.0 * parameters.torque_nm_per_a * parameters.gear_ratio);
+    bus.setLoad(0, load);
+    keep(1000);
+  }
+  void keep(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      if (hot) robot->simBus().setTemperature(0, 92.0);
+      follow({.mode = ControlMode::kTotalAngle, .value = 0.0}, 1);
+      ASSERT_EQ(status(), MotorStatus::kActive) << i << ": " << static_cast<int>(robot->motor(0).fault);
+      ASSERT_EQ(robot->motor(0).limits & kLimitCurrent, 0U) << i;
+    }
+    EXPECT_NEAR(std::fabs(robot->motor(0).feedback.current_a), 4.0, 0.5);
+  }
+  bool hot = false;
+};
+
+TEST_F(OwnLoopReducedTest, ALoadThatTheDrivesOwnLoopHoldsIsNoStall) {
+  for (const auto& [model, keys] : {std::pair{"RMD-X8-20, id: 22", ""},
+                                    std::pair{"LK-MG5010E-i10, id: 12", "velocity_limit_rpm: 300, "}}) {
+    SCOPED_TRACE(model);
+    hot = false;
+    contact = kClosed;
+    hold(model, keys);
+    see(kOpen);
+    keep(2000);
+    see(kClosed);
+    hot = true;
+    keep(2000);
+  }
 }
 
 TEST_F(ReducedModeTest, ACurrentOfADriveOfUnknownSpeedIsBrakedByItsLoop) {
