@@ -35,13 +35,15 @@ struct MotorTraits {
   int feedback_hz = 1000;     ///< Default.
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
-  bool asked = false;          ///< Sends only answers: its feedback comes at the command rate.
-  Duration restart_silence{};  ///< An asked drive that is silent for longer has restarted; 0: not judged.
-  int samples_every = 1;       ///< Turns of an asked drive for each sample of its angle.
-  bool fd = false;             ///< Speaks CAN FD.
-  int data_bitrate = 0;        ///< Data phase of its CAN FD, as delivered; 0: unknown.
-  bool classic_only = true;    ///< Answers FD frames with error frames.
-  bool watchdog = false;       ///< The drive's own: stops it without commands; set or verified by enabling.
+  bool asked = false;  ///< Sends only answers: its feedback comes at the command rate.
+  /// An asked drive that is silent for longer may have restarted or turned too far to be followed; 0: not
+  /// judged, or with a limit of three periods or more.
+  Duration restart_silence{};
+  int samples_every = 1;     ///< Turns of an asked drive for each sample of its angle.
+  bool fd = false;           ///< Speaks CAN FD.
+  int data_bitrate = 0;      ///< Data phase of its CAN FD, as delivered; 0: unknown.
+  bool classic_only = true;  ///< Answers FD frames with error frames.
+  bool watchdog = false;     ///< The drive's own: stops it without commands; set or verified by enabling.
   ModeSet modes;
   SpringRange spring_range;  ///< Bounds impedance targets, at the output of the model's own gear.
   DriveFrames frames;

@@ -82,6 +82,9 @@ class VirtualRobot {
   /// Every frame that the drives send from now on is added there.
   void record(std::vector<CanFrame>& frames) { heard_ = &frames; }
 
+  /// Frames are stamped so much later than they were sent, up to half a period.
+  void stampLate(Duration by) { stamp_delay_ = by; }
+
   void freezeSimulation(bool frozen) { frozen ? frozen_.set() : frozen_.reset(); }
   void freezeBus(std::size_t bus, bool frozen) { frozen_.set(bus, frozen); }
 
@@ -180,6 +183,7 @@ class VirtualRobot {
       if (inbox.echo_reads != 0) ++inbox.echo_reads;
     for (std::size_t i = 0; i < receivers_.size(); ++i) {
       const auto reception = receivers_[i].receive(wake, batch_);
+      for (std::size_t k = 0; k < reception.frame_count; ++k) batch_[k].received += stamp_delay_;
       inboxes_[i].frames.push(batch_.data(), reception.frame_count);
       if (heard_ != nullptr) {
         heard_->insert(heard_->end(), batch_.begin(),
@@ -199,6 +203,7 @@ class VirtualRobot {
   std::uint64_t orders_ = 0;
   std::vector<CanFrame>* heard_ = nullptr;
   std::bitset<kMaxBuses> frozen_;
+  Duration stamp_delay_{};
 };
 
 }  // namespace rc10::test

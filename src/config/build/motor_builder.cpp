@@ -93,18 +93,20 @@ void readLoops(MotorParse& in) {
 
 // One lost answer is no restart.
 void checkCommandSpacing(MotorParse& in) {
-  const Duration most = in.traits.restart_silence / 2;
-  const int tick_hz = in.motor().tick_hz;
-  const auto spacing = in.motor().command_divider * periodOf(tick_hz);
-  if (most <= Duration::zero() || spacing <= most) return;
+  const Duration silence = in.traits.restart_silence;
+  const Duration period = periodOf(in.motor().tick_hz);
+  const auto spacing = in.motor().command_divider * period;
+  // The answer after the lost one may be late by a tick.
+  if (silence <= Duration::zero() || 2 * spacing + period <= silence) return;
   const auto given = in.settings.find("command_divider");
   if (!given) return;  // the default, 1, is within it at every tick rate
-  const auto most_ms = most / std::chrono::milliseconds{1};
   in.problems.error(given->place(), given->path,
                     given->text() + " asks the drive every " +
                         numberText(std::chrono::duration<double, std::milli>(spacing).count()) +
-                        " ms, and one that is silent for " + std::to_string(2 * most_ms) +
-                        " ms counts as restarted; use at most " + std::to_string(most_ms * tick_hz / 1000));
+                        " ms: with one answer lost it is silent for so long that it may have restarted or "
+                        "turned unseen (" +
+                        std::to_string(silence / std::chrono::milliseconds{1}) + " ms); use at most " +
+                        std::to_string(std::max<Duration::rep>((silence / period - 1) / 2, 1)));
 }
 
 void readRates(MotorParse& in) {

@@ -162,6 +162,8 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.scaled_speed = true;
   traits.bounds_effort = boundsCurrent(control);
   traits.asked = true;
+  traits.restart_silence =
+      DamiaoPosition::longestSilence(scaleOf(model, own), damiaoFastestRadS(model, scaleOf(model, own)));
   traits.fd = can_fd;
   traits.data_bitrate = can_fd ? 5'000'000 : 0;
   traits.classic_only = !can_fd;

@@ -22,6 +22,11 @@ constexpr double kFarthestCountRad = 1e7;
 DamiaoPosition::DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s, Duration period) noexcept
     : scale_(scale), fastest_rad_s_(fastest_rad_s), period_(period), step_rad_(damiao::positionStep(scale)) {}
 
+Duration DamiaoPosition::longestSilence(const DamiaoScale& scale, double fastest_rad_s) noexcept {
+  const std::chrono::duration<double> silence_s{kSureShare * scale.p_max_rad / fastest_rad_s};
+  return std::chrono::duration_cast<Duration>(silence_s);
+}
+
 double DamiaoPosition::rad() const noexcept {
   return static_cast<double>(code_) * step_rad_ - scale_.p_max_rad;
 }
@@ -39,14 +44,13 @@ DamiaoPosition::Step DamiaoPosition::take(std::uint16_t code, MonotonicTime rece
     return Step::kFollows;
   }
   const Duration gap = received - received_;
-  const double gap_s = std::fabs(std::chrono::duration<double>(gap).count());
   received_ = received;
   const auto moved = static_cast<std::int16_t>(static_cast<std::uint16_t>(code - code_));
   const double reach_rad =
       fastest_rad_s_ * static_cast<double>(seconds(longestApart(gap, period_))) + kSlackRad;
   Step step = Step::kFollows;
   if (std::fabs(moved * step_rad_) > reach_rad) step = Step::kJumped;
-  if (fastest_rad_s_ * gap_s > kSureShare * scale_.p_max_rad) step = Step::kLost;
+  if (std::chrono::abs(gap) > longestSilence(scale_, fastest_rad_s_)) step = Step::kLost;
   if (step == Step::kFollows) {
     code_ += moved;
   } else {

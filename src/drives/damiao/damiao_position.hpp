@@ -22,6 +22,9 @@ class DamiaoPosition {
   /// `fastest_rad_s`: of the drive's output, and some more. `period`: of its feedback.
   DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s, Duration period) noexcept;
 
+  /// After a longer one it may have wrapped unseen.
+  [[nodiscard]] static Duration longestSilence(const DamiaoScale& scale, double fastest_rad_s) noexcept;
+
   /// The position in feedback. Unless it follows, the wrap is unknown from now on.
   Step take(std::uint16_t code, MonotonicTime received) noexcept;
 

@@ -134,6 +134,9 @@ class RobstrideFamily final : public MotorFamily {
     traits.limit_by_report = control == RobstrideControl::kVelocity || control == RobstrideControl::kPosition;
     traits.scaled_speed = true;
     traits.asked = true;
+    // Half the scale passes in 250 ms at the highest speed; and a drive that was silent for that time may
+    // have been without power.
+    traits.restart_silence = std::chrono::milliseconds{200};
     traits.watchdog = own.integer("watchdog_ms") > 0;
     traits.modes = modesOf(control);
     if (control == RobstrideControl::kOperation)

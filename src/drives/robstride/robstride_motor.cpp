@@ -16,9 +16,6 @@ namespace parameter = robstride::parameter;
 
 constexpr std::size_t kLength = 8;
 
-// Half the scale passes in 250 ms at the highest speed; and a drive that was silent for that time may have
-// been without power.
-constexpr Duration kLongestGap = std::chrono::milliseconds{200};
 // Between two samples it cannot have moved further than at this multiple of its highest speed, plus what the
 // time stamps are wrong by.
 constexpr double kJumpFactor = 1.2;
@@ -205,7 +202,7 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
                                            static_cast<double>(seconds(longestApart(gap, feedbackPeriod())));
   const bool jumped = std::abs(moved) > reach;
   if (jumped) ++feedback_.jumps;
-  const bool follows = gap <= kLongestGap && !jumped && !feedback_.angle_at_end;
+  const bool follows = gap <= traits().restart_silence && !jumped && !feedback_.angle_at_end;
   if (!follows) doubtAngles();
   position_rad_ += moved;
   speed_.add(position_rad_, follows, received);

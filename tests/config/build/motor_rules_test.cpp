@@ -382,11 +382,11 @@ TEST(MotorRules, ADriveThatOnlyAnswersIsAskedBeforeItsSilenceIsARestart) {
     ++judged;
     const std::string model{entry.family->models().front()};
     const std::string motor = "{name: a, model: " + model + ", id: 1, command_divider: ";
-    EXPECT_THAT(errorsOfMotor(motor + "50}"), IsEmpty());
-    EXPECT_THAT(
-        errorsOfMotor(motor + "51}"),
-        ElementsAre(EndsWith("command_divider: 51 asks the drive every 51 ms, and one that is silent for "
-                             "100 ms counts as restarted; use at most 50")));
+    EXPECT_THAT(errorsOfMotor(motor + "49}"), IsEmpty());
+    EXPECT_THAT(errorsOfMotor(motor + "50}"),
+                ElementsAre(EndsWith(
+                    "command_divider: 50 asks the drive every 50 ms: with one answer lost it is silent for "
+                    "so long that it may have restarted or turned unseen (100 ms); use at most 49")));
   }
   EXPECT_EQ(judged, 2);
 }
