@@ -73,6 +73,7 @@ class ModuleRig {
     SignalMessage message;
     message.client = "bench";
     message.session = 1;
+    message.received = now_ + kPeriod;  // the tick in which its motors are enabled
     message.deadline = now_ + std::chrono::hours{24};
     message.values.fill(kNoSignal);
     const auto& names = robot_->modules()[0].module->signals().inputs;

@@ -31,7 +31,8 @@ class ModuleRobot {
   /// At the output shaft; its age is tick.now - feedback.received.
   [[nodiscard]] virtual const MotorFeedback& feedback(std::size_t motor) const noexcept = 0;
   [[nodiscard]] virtual MotorStatus status(std::size_t motor) const noexcept = 0;
-  /// Whether a target of this module would be obeyed now: the motor is ACTIVE and nobody else commands it.
+  /// Whether a target of this module would be obeyed now: the motor is ACTIVE, nobody else commands it, and
+  /// the module's inputs are not from before it was enabled.
   [[nodiscard]] virtual bool obeys(std::size_t motor) const noexcept = 0;
   /// Highest speed that the reduced mode leaves the motor now, rpm; infinite where it leaves it all. Each
   /// motor is held to its own: who divides a motion among several keeps below the lowest.
@@ -55,9 +56,9 @@ class ModuleRobot {
 
   /// Since a client was last heard: by a command, a request or inputs of a module, or by hearClient().
   [[nodiscard]] virtual Duration clientsSilent() const noexcept = 0;
-  /// A person speaks through this module, as by a remote: that counts as a client. In each tick in which it
-  /// is so.
-  virtual void hearClient() noexcept = 0;
+  /// A person speaks through this module, as by a remote, and has last done so at `said`: that counts as a
+  /// client. In each tick in which it is so, before what follows from it.
+  virtual void hearClient(MonotonicTime said) noexcept = 0;
 
   /// An output of another module, as its last update() left it. NaN: without meaning now.
   [[nodiscard]] virtual double read(SignalPlace output) const noexcept = 0;

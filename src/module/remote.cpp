@@ -182,7 +182,7 @@ class Remote : public Module_Base {
     if (heard) channels_->read(values_);
     watchLink(heard, tick, robot);
     if (heard) {
-      robot.hearClient();
+      robot.hearClient(tick.now - age);
       watchArm(tick.now - age, tick, robot);
     }
     // An e-stop ends what the switch has asked for: its own end enables nothing.

@@ -98,6 +98,7 @@ TEST(Gripper, IsConfiguredAndRunsAsAnyOtherModule) {
   for (int i = 0; i < 300; ++i) {
     SignalMessage message;
     message.client = "test";
+    message.received = robot.now();
     message.deadline = robot.now() + 50ms;
     message.values.fill(kNoSignal);
     message.values[0] = 1.0;

@@ -375,6 +375,7 @@ void Chaos::sendInputs() {
     message.client = link::Name{"driver"};
     message.session = 9;
     message.module = static_cast<std::uint16_t>(module);
+    message.received = robot_->now();
     message.deadline = robot_->now() + 50ms;
     message.values = inputs_[module].values;
     if (robot_->exchange().signals.push(message)) oracle_->signalled(message);

@@ -410,6 +410,7 @@ void Match::drive() {
     message.client = link::Name{"program"};
     message.session = 1;
     message.module = module;
+    message.received = now;
     message.deadline = now + 100ms;
     message.values.fill(kNoSignal);
     std::copy(values.begin(), values.end(), message.values.begin());

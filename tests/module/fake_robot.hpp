@@ -63,6 +63,7 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] std::size_t largestRequest() const { return largest_request_; }
   /// In the last update.
   [[nodiscard]] bool clientHeard() const { return client_heard_; }
+  [[nodiscard]] MonotonicTime clientSaid() const { return client_said_; }
   [[nodiscard]] Motor& motor(std::size_t index) { return motors_.at(index); }
   [[nodiscard]] std::vector<Motor>& motors() { return motors_; }
   [[nodiscard]] const std::vector<Asked>& asked() const { return asked_; }
@@ -98,7 +99,10 @@ class FakeRobot : public ModuleRobot {
   }
   void forgetReference(std::size_t motor) noexcept override { motors_[motor].feedback.zeroed = false; }
   [[nodiscard]] Duration clientsSilent() const noexcept override { return clients_silent_; }
-  void hearClient() noexcept override { client_heard_ = true; }
+  void hearClient(MonotonicTime said) noexcept override {
+    client_heard_ = true;
+    client_said_ = said;
+  }
   void askAll(RobotRequest request) noexcept override { asked_.push_back({request, std::nullopt, 0.0}); }
   [[nodiscard]] double read(SignalPlace output) const noexcept override {
     const auto found = outputs_.find({output.module, output.signal});
@@ -115,6 +119,7 @@ class FakeRobot : public ModuleRobot {
   Tick tick_{.index = 0, .now = MonotonicTime{std::chrono::seconds{1000}}, .dt_s = 0.001F};
   Duration clients_silent_{};
   bool client_heard_ = false;
+  MonotonicTime client_said_{};
   std::size_t largest_request_ = 0;  ///< Motors of one request.
   std::vector<Motor> motors_;
   std::vector<Asked> asked_;

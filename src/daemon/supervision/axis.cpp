@@ -409,7 +409,7 @@ void Axis::clearFault(const Tick& tick) noexcept {
 
 std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder& sender,
                                        const Lease::Term& term) noexcept {
-  const bool late = term.received < enabling_since_;  // sent before it was enabled
+  const bool late = enabledSince(term.received - term.inputs_age);
   if (target.mode == ControlMode::kCoast) {
     if (late) return std::nullopt;
     // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid

@@ -107,6 +107,8 @@ class Axis {
   [[nodiscard]] bool obeys(const Lease::Holder& sender, MonotonicTime now) const noexcept {
     return status_ == MotorStatus::kActive && allows(sender, now);
   }
+  /// What was said before does not act.
+  [[nodiscard]] bool enabledSince(MonotonicTime said) const noexcept { return said < enabling_since_; }
   /// Takes a target that the lease allows. The reason, if it does not act.
   [[nodiscard]] std::optional<SkipReason> follow(const Target& target, const Lease::Holder& sender,
                                                  const Lease::Term& term) noexcept;

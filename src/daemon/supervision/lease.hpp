@@ -32,6 +32,7 @@ class Lease {
   struct Term {
     MonotonicTime received{};
     MonotonicTime until{};
+    Duration inputs_age{};  ///< As of a command.
   };
 
   void take(const Holder& holder, const Term& term) noexcept {

@@ -37,10 +37,10 @@ class Supervisor {
   void takeModuleOrder(const Order& order, const Tick& tick) noexcept;
   /// A module homes this motor, from this tick on.
   void forgetReference(std::size_t motor) noexcept { axes_[motor].forgetReference(); }
-  /// Whether a target of `sender` for this motor would act now.
-  [[nodiscard]] bool wouldObey(std::size_t motor, const Lease::Holder& sender,
+  /// Whether a target of `sender` for this motor would act now, if it follows what was `said` then.
+  [[nodiscard]] bool wouldObey(std::size_t motor, const Lease::Holder& sender, MonotonicTime said,
                                const Tick& tick) const noexcept {
-    return axes_[motor].obeys(sender, tick.now) && !waitsForGroup(motor);
+    return axes_[motor].obeys(sender, tick.now) && !axes_[motor].enabledSince(said) && !waitsForGroup(motor);
   }
 
   /// Tells every motor what kind of frame its drive gets. Called before Motor_Base::update().
@@ -100,6 +100,7 @@ class Supervisor {
                             const Command& command, const Tick& tick) noexcept;
   void letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept;
   [[nodiscard]] bool waits(const Command::Setpoint& setpoint) const noexcept;
+  [[nodiscard]] bool followsThePast(const Command::Setpoint& setpoint, const Command& command) const noexcept;
   [[nodiscard]] std::optional<SkipReason> whySkipped(const Command::Setpoint& setpoint) const noexcept;
   void skip(const Command::Setpoint& setpoint, SkipReason reason, const Tick& tick) noexcept;
   void carryOut(const Order& order, const Tick& tick) noexcept;

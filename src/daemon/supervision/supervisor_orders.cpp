@@ -49,14 +49,22 @@ bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noe
   if (!mayCommand(command, sender, tick)) return false;
   // Motors of a module are one mechanism: half of its targets would rack it.
   for (std::size_t i = 0; i < command.count; ++i) {
-    if (const auto reason = whySkipped(command.setpoints[i])) {
-      skip(command.setpoints[i], *reason, tick);
+    const auto& setpoint = command.setpoints[i];
+    const auto reason = whySkipped(setpoint);
+    if (reason) skip(setpoint, *reason, tick);
+    if (reason || followsThePast(setpoint, command)) {
       letGo(command, sender, tick);
       return true;
     }
   }
   for (std::size_t i = 0; i < command.count; ++i) (void)follow(command.setpoints[i], sender, command, tick);
   return true;
+}
+
+// Inputs of a module from before its motor was enabled: that is no mistake of the module.
+bool Supervisor::followsThePast(const Command::Setpoint& setpoint, const Command& command) const noexcept {
+  return setpoint.target.mode != ControlMode::kCoast &&
+         axes_[setpoint.motor].enabledSince(command.received - command.inputs_age);
 }
 
 // Letting go is never withheld.
@@ -122,7 +130,7 @@ std::optional<SkipReason> Supervisor::whySkipped(const Command::Setpoint& setpoi
 
 bool Supervisor::follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                         const Command& command, const Tick& tick) noexcept {
-  const Lease::Term term{command.received, command.deadline};
+  const Lease::Term term{command.received, command.deadline, command.inputs_age};
   const auto reason =
       waits(setpoint) ? SkipReason::kGroup : axes_[setpoint.motor].follow(setpoint.target, sender, term);
   if (reason) skip(setpoint, *reason, tick);

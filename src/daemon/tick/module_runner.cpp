@@ -49,6 +49,7 @@ void ModuleRunner::update(const Tick& tick) noexcept {
       lease.release();
       module.clearInputs();
     }
+    said_ = lease.taken() ? controls_[current_].said : tick.now;
     command_.count = 0;
     commanded_.reset();
     sent_.fill(false);
@@ -60,12 +61,12 @@ void ModuleRunner::update(const Tick& tick) noexcept {
 void ModuleRunner::receive(const Tick& tick) noexcept {
   // Only what is there now, as with commands.
   for (auto n = link_.signals.read_available(); n > 0; --n) {
-    link_.signals.consume_one([&](const SignalMessage& message) { take(message, tick); });
+    link_.signals.consume_one([&](const SignalMessage& message) { take(message, message.received, tick); });
   }
 }
 
 // From a client or another module: the same rules.
-void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept {
+void ModuleRunner::take(const SignalMessage& message, MonotonicTime said, const Tick& tick) noexcept {
   auto& control = controls_[message.module];
   const Lease::Holder sender{message.client, message.session, message.priority};
   if (message.session != kModuleSession) supervisor_.hearClient(tick.now);
@@ -83,6 +84,7 @@ void ModuleRunner::take(const SignalMessage& message, const Tick& tick) noexcept
   if (sender.session != control.sender.session || sender.client.view() != control.sender.client.view())
     module.changeSender();
   control.sender = sender;
+  control.said = said;
   control.lease.take(sender, {message.received, message.deadline});
   module.setInputs(message.values);
 }
@@ -96,6 +98,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     command_.priority = from.priority;
     command_.received = tick.now;
     command_.deadline = tick.now + validity_;
+    command_.inputs_age = tick.now - said_;
     const bool refused = !supervisor_.takeModuleCommand(command_, tick);
     if (refused && !control.refused && tick.now - control.last_refusal_report >= kReportInterval) {
       control.last_refusal_report = tick.now;
@@ -113,7 +116,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     message.module = static_cast<std::uint16_t>(module);
     message.received = tick.now;
     message.deadline = tick.now + validity_;
-    take(message, tick);
+    take(message, said_, tick);
   }
 }
 
@@ -129,7 +132,7 @@ const MotorFeedback& ModuleRunner::feedback(std::size_t motor) const noexcept {
 MotorStatus ModuleRunner::status(std::size_t motor) const noexcept { return supervisor_.status(motor); }
 
 bool ModuleRunner::obeys(std::size_t motor) const noexcept {
-  return supervisor_.wouldObey(motor, sender(), tick_);
+  return supervisor_.wouldObey(motor, sender(), said_, tick_);
 }
 
 void ModuleRunner::setTarget(std::size_t motor, const Target& target) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -33,12 +34,14 @@ class ModuleRunner : private ModuleRobot {
   struct Control {
     Lease lease;           ///< Whose inputs are in force, and until when.
     Lease::Holder sender;  ///< Giver of the last ones, also when they have lapsed.
+    MonotonicTime said{};  ///< When a client or a person said them: to this module, or to one that passes
+                           ///< them on.
     MonotonicTime last_refusal_report{};
     bool refused = false;  ///< Its last targets.
   };
 
   void receive(const Tick& tick) noexcept;
-  void take(const SignalMessage& message, const Tick& tick) noexcept;
+  void take(const SignalMessage& message, MonotonicTime said, const Tick& tick) noexcept;
   void handOver(const Tick& tick) noexcept;
   [[nodiscard]] Lease::Holder sender() const noexcept;
   [[nodiscard]] Order orderOf(RobotRequest request) const noexcept;
@@ -59,7 +62,10 @@ class ModuleRunner : private ModuleRobot {
   [[nodiscard]] Duration clientsSilent() const noexcept override {
     return tick_.now - supervisor_.clientHeard();
   }
-  void hearClient() noexcept override { supervisor_.hearClient(tick_.now); }
+  void hearClient(MonotonicTime said) noexcept override {
+    said_ = std::min(said_, said);
+    supervisor_.hearClient(tick_.now);
+  }
   [[nodiscard]] double read(SignalPlace output) const noexcept override;
   void send(SignalPlace input, double value) noexcept override;
   void report(std::size_t event) noexcept override;
@@ -75,6 +81,7 @@ class ModuleRunner : private ModuleRobot {
   // While a module's update() runs: which it is, and what it has asked for so far.
   std::size_t current_ = 0;
   Tick tick_{};
+  MonotonicTime said_{};  ///< When that was said which it follows; now: it acts by itself.
   Command command_;
   MotorSet commanded_;
   std::array<SignalMessage, kMaxModules> messages_;

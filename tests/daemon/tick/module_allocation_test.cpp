@@ -26,6 +26,7 @@ class ModuleAllocationTest : public ::testing::TestWithParam<ModuleCase> {
   }
   void tick(int index) {
     if (message_.client.view() == "test") {
+      message_.received = robot_.now();
       message_.deadline = robot_.now() + 50ms;
       ASSERT_TRUE(robot_.exchange().signals.push(message_));
     }

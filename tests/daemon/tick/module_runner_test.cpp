@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::Field;
+using ::testing::IsEmpty;
 using namespace std::chrono_literals;
 
 using Body = std::function<void(const Tick&, ModuleRobot&)>;
@@ -88,6 +89,29 @@ class ModuleRunnerTest : public ::testing::Test {
   ScriptedType turning_{[this](const Tick&, ModuleRobot& robot) {
     if (turns_) robot.setTarget(0, rpm(50.0));
   }};
+  /// Module that turns motors 0 and 1 as its input says.
+  ScriptedType following_{[](const Tick&, ModuleRobot& robot) {
+    const double asked_rpm = robot.read({.module = 0, .signal = 0});
+    if (std::isnan(asked_rpm)) return;
+    for (const std::size_t motor : {0U, 1U}) robot.setTarget(motor, rpm(asked_rpm));
+  }};
+
+  bool follows() { return robot_->motor(0).acting == Acting::kTarget; }
+  /// Nothing acts until the next message, which does.
+  void expectNothingUntilANewerMessage() {
+    ASSERT_EQ(robot_->motor(0).status, MotorStatus::kActive);
+    (void)robot_->events();
+    for (int i = 0; i < 100; ++i) {
+      robot_->tick();
+      ASSERT_FALSE(follows()) << "after " << i << " ticks";
+      ASSERT_EQ(robot_->motor(0).owner.view(), "");
+      ASSERT_FALSE(std::isnan(seen())) << "it is still valid";
+    }
+    EXPECT_THAT(robot_->events(), IsEmpty()) << "no mistake of the module";
+    signal("planner", 0, 2.0);
+    robot_->run(2);
+    EXPECT_TRUE(follows());
+  }
 };
 
 TEST_F(ModuleRunnerTest, AModuleTurnsMotorsAsAClientWithItsNameAndPriority) {
@@ -260,6 +284,106 @@ TEST_F(ModuleRunnerTest, AModuleGivesALaterOneItsInputInTheSameTick) {
   EXPECT_TRUE(std::isnan(seen(1)));
 }
 
+TEST_F(ModuleRunnerTest, InputsFromBeforeEnablingDoNotActAfterIt) {
+  start({{&following_, 0}});
+  signal("planner", 0, 2.0, 1000ms);
+  robot_->run(300);
+  enable();
+  expectNothingUntilANewerMessage();
+}
+
+TEST_F(ModuleRunnerTest, InputsFromBeforeAnEstopDoNotActAfterAnotherEnabling) {
+  start({{&following_, 0}});
+  enable();
+  signal("planner", 0, 2.0, 1000ms);
+  robot_->run(300);
+  ASSERT_TRUE(follows());
+  (void)robot_->order(Operation::kEstop);
+  Order clear;
+  clear.id = 1;
+  clear.operation = Operation::kClear;
+  clear.whole_robot = true;
+  (void)robot_->carryOut(clear);
+  enable();
+  expectNothingUntilANewerMessage();
+}
+
+TEST_F(ModuleRunnerTest, InputsFromBeforeOneOfItsMotorsWasEnabledMoveNoneOfThem) {
+  start({{&following_, 0}});
+  (void)robot_->orderFor(MotorSet{0b001}, Operation::kEnable);
+  signal("planner", 0, 2.0, 1000ms);
+  robot_->run(300);
+  (void)robot_->orderFor(MotorSet{0b010}, Operation::kEnable);
+  expectNothingUntilANewerMessage();
+}
+
+TEST_F(ModuleRunnerTest, InputsFromBeforeAGroupIsArmedAnewDoNotActAfterIt) {
+  auto config = twoWheelsAndYaw();
+  config.groups.push_back(leftAndRight(GroupConfig::Return::kRearmAtRest));
+  start({{&following_, 0}}, nullptr, config);
+  enable();
+  signal("planner", 0, 2.0, 1000ms);
+  robot_->run(100);
+  ASSERT_TRUE(follows());
+  robot_->freezeBus(0, true);
+  robot_->run(50);
+  ASSERT_EQ(robot_->motor(0).status, MotorStatus::kOffline);
+  robot_->freezeBus(0, false);
+  for (int i = 0; i < 500 && robot_->motor(0).status != MotorStatus::kActive; ++i) robot_->tick();
+  expectNothingUntilANewerMessage();
+}
+
+TEST_F(ModuleRunnerTest, InputsThatAnotherModulePassesOnAreAsOldAsThoseThatItGot) {
+  const ScriptedType passing{[](const Tick&, ModuleRobot& robot) {
+    const double asked_rpm = robot.read({.module = 0, .signal = 0});
+    if (!std::isnan(asked_rpm)) robot.send({.module = 1, .signal = 0}, asked_rpm);
+  }};
+  const ScriptedType driven{[](const Tick&, ModuleRobot& robot) {
+    const double asked_rpm = robot.read({.module = 1, .signal = 0});
+    if (!std::isnan(asked_rpm)) robot.setTarget(0, rpm(asked_rpm));
+  }};
+  start({{&passing, 5}, {&driven, 0}});
+  signal("planner", 0, 2.0, 1000ms);
+  robot_->run(300);
+  enable();
+  expectNothingUntilANewerMessage();
+}
+
+// Its driver's last frame may be as old as lost_ms.
+TEST_F(ModuleRunnerTest, WhatARemotePassesOnIsAsOldAsItsLastFrame) {
+  MonotonicTime frame{};
+  const ScriptedType remote{[&](const Tick&, ModuleRobot& robot) {
+    robot.hearClient(frame);
+    robot.send({.module = 1, .signal = 0}, 2.0);
+  }};
+  const ScriptedType driven{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(2.0)); }};
+  start({{&remote, 5}, {&driven, 0}});
+  frame = robot_->now();
+  robot_->run(10);
+  enable();
+  robot_->run(50);
+  EXPECT_FALSE(follows());
+  frame = robot_->now();
+  robot_->run(2);
+  EXPECT_TRUE(follows());
+}
+
+TEST_F(ModuleRunnerTest, AModuleIsToldThatItsMotorDoesNotObeyInputsFromBeforeEnabling) {
+  bool obeys = false;
+  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) { obeys = robot.obeys(0); }};
+  start({{&type, 0}});
+  signal("planner", 0, 2.0, 200ms);
+  robot_->run(50);
+  enable();
+  robot_->run(3);
+  EXPECT_FALSE(obeys);
+  signal("planner", 0, 2.0, 50ms);
+  robot_->run(2);
+  EXPECT_TRUE(obeys);
+  robot_->run(100);
+  EXPECT_TRUE(obeys) << "what it does by itself, as to hold";
+}
+
 TEST_F(ModuleRunnerTest, AModuleReadsWhatAnEarlierOneGivesInTheSameTick) {
   double read = kNoSignal;
   const ScriptedType imu;
@@ -365,7 +489,7 @@ TEST_F(ModuleRunnerTest, AModuleKnowsHowLongNoClientWasHeard) {
   Duration silent{};
   bool remote = false;
   const ScriptedType type{[&](const Tick&, ModuleRobot& robot) {
-    if (remote) robot.hearClient();
+    if (remote) robot.hearClient(robot_->now());
     silent = robot.clientsSilent();
   }};
   start({{&type, 0}});
