@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/nearest.hpp"
@@ -15,8 +17,8 @@ namespace {
 
 using enum OwnKey::Kind;
 
-// Time after the arm switch in which motors are cleared and enabled as they become ready; what fails later
-// stays down until the driver uses the switch again.
+// Time after the arm switch in which motors are cleared and enabled as they become ready; what fails later,
+// or is disabled, stays down until the driver uses the switch again.
 constexpr Duration kArming = std::chrono::seconds{3};
 // A motor that could not be enabled is tried again.
 constexpr Duration kArmingRetry = std::chrono::milliseconds{200};
@@ -185,10 +187,13 @@ class Remote : public Module_Base {
       robot.hearClient(tick.now - age);
       watchArm(tick.now - age, tick, robot);
     }
-    // An e-stop ends what the switch has asked for: its own end enables nothing.
-    if (robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
-    if (heard) arm(tick, robot);
-    if (heard && (armed_ || !arm_channel_)) command(robot);
+    // An e-stop ends what the switch has asked for, its own end enables nothing; so does a disable.
+    const bool disabled = std::exchange(disables_, robot.disables()) != robot.disables();
+    if (disabled || robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
+    // After a gap the switch counts from the second frame: it may have gone down.
+    const bool up = heard && armed_ && switch_up_.value_or(false);
+    if (up) arm(tick, robot);
+    if (up || (heard && !arm_channel_)) command(robot);
     show(heard, age);
   }
 
@@ -265,7 +270,7 @@ class Remote : public Module_Base {
   // Clears faults and enables, for a while: after a power cut drives come back one after the other. An e-stop
   // stays: clearing it is another decision.
   void arm(const Tick& tick, ModuleRobot& robot) noexcept {
-    if (!armed_ || tick.now >= arming_until_) return;
+    if (tick.now >= arming_until_) return;
     for (std::size_t motor = 0; motor < was_active_.size(); ++motor)
       was_active_[motor] = was_active_[motor] || robot.status(motor) == MotorStatus::kActive;
     if (tick.now < next_try_) return;
@@ -319,6 +324,7 @@ class Remote : public Module_Base {
   MonotonicTime lost_since_{};
   MonotonicTime arming_until_{};
   MonotonicTime next_try_{};
+  std::uint32_t disables_ = 0;  ///< ModuleRobot::disables() of the tick before.
 };
 
 Result<std::size_t> findChannel(const RemoteChannels& channels, const std::string& name, const char* key) {

@@ -71,6 +71,8 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] const std::map<std::pair<std::size_t, std::size_t>, double>& sent() const { return sent_; }
   [[nodiscard]] const std::vector<std::size_t>& events() const { return events_; }
   [[nodiscard]] MonotonicTime now() const { return tick_.now; }
+  /// Somebody asks for a disable.
+  void disable() { ++disables_; }
   void setState(RobotStatus state) { state_ = state; }
 
   [[nodiscard]] RobotStatus state() const noexcept override { return state_; }
@@ -78,6 +80,7 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override {
     return motors_[motor].feedback;
   }
+  [[nodiscard]] std::uint32_t disables() const noexcept override { return disables_; }
   [[nodiscard]] double speedCeilingRpm(std::size_t motor) const noexcept override {
     return motors_[motor].speed_ceiling_rpm;
   }
@@ -120,6 +123,7 @@ class FakeRobot : public ModuleRobot {
   Duration clients_silent_{};
   bool client_heard_ = false;
   MonotonicTime client_said_{};
+  std::uint32_t disables_ = 0;
   std::size_t largest_request_ = 0;  ///< Motors of one request.
   std::vector<Motor> motors_;
   std::vector<Asked> asked_;

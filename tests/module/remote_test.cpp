@@ -276,10 +276,76 @@ TEST_F(Remote, UnheardItNeitherClearsNorEnables) {
   EXPECT_TRUE(asks(RobotRequest::kEnable)) << "heard again within the time of the switch";
 }
 
+TEST_F(Remote, ADisableEndsTheArmingAndOnlyTheSwitchBeginsAnother) {
+  build();
+  robot_.motor(0).status = MotorStatus::kReady;
+  robot_.motor(1).status = MotorStatus::kOffline;
+  arm();
+  ASSERT_TRUE(asks(RobotRequest::kEnable));
+  robot_.motor(0).status = MotorStatus::kEnabling;
+  run(100);
+  asked_.clear();
+  robot_.disable();
+  robot_.motor(0).status = MotorStatus::kReady;
+  robot_.motor(1).status = MotorStatus::kReady;  // its drive has come back meanwhile
+  run(3500);
+  EXPECT_THAT(asked_, IsEmpty());
+  armSwitch(Dr16Input::Switch::kMiddle);
+  asked_.clear();
+  arm();
+  EXPECT_TRUE(asks(RobotRequest::kEnable));
+}
+
+TEST_F(Remote, AMotorWhoseDriveHasRefusedIsAskedForAgain) {
+  build();
+  robot_.motor(0).status = MotorStatus::kReady;
+  arm();
+  robot_.motor(0).status = MotorStatus::kEnabling;
+  run(100);
+  asked_.clear();
+  robot_.motor(0).status = MotorStatus::kReady;
+  run(250);
+  EXPECT_TRUE(asks(RobotRequest::kEnable));
+}
+
+TEST_F(Remote, AfterAGapItActsOnTheSwitchOfNoSingleFrame) {
+  build();
+  robot_.motor(0).status = MotorStatus::kFault;
+  arm();
+  run(300, false);
+  asked_.clear();
+  run(14);
+  ASSERT_EQ(shown("connected"), 1.0);
+  EXPECT_THAT(robot_.sent(), IsEmpty()) << "the first frame: the switch may be down";
+  EXPECT_THAT(asked_, IsEmpty());
+  run(14);
+  EXPECT_FALSE(robot_.sent().empty()) << "still up: a short gap";
+  run(200);
+  EXPECT_TRUE(asks(RobotRequest::kClear));
+}
+
+TEST_F(Remote, ASwitchThatWentDownInAGapNeitherEnablesNorCommands) {
+  build();
+  robot_.motor(0).status = MotorStatus::kReady;
+  arm();
+  run(300, false);
+  asked_.clear();
+  dbus_.left_switch = Dr16Input::Switch::kDown;
+  for (int i = 0; i < 100; ++i) {
+    run(1);
+    ASSERT_THAT(robot_.sent(), IsEmpty());
+  }
+  EXPECT_FALSE(asks(RobotRequest::kEnable));
+  EXPECT_TRUE(asks(RobotRequest::kDisable));
+  EXPECT_EQ(armed(), 0.0);
+}
+
 TEST_F(Remote, ItsDriverIsAClientWhileItIsHeard) {
   build();
   run(30);
   EXPECT_TRUE(robot_.clientHeard());
+  EXPECT_EQ(robot_.now() - robot_.clientSaid(), std::chrono::milliseconds{since_frame_ + 1})
+      << "by its last frame";
   run(200, false);
   EXPECT_FALSE(robot_.clientHeard());
 }

@@ -70,6 +70,9 @@ class Supervisor {
   void hearClient(MonotonicTime now) noexcept { client_heard_ = now; }
   [[nodiscard]] MonotonicTime clientHeard() const noexcept { return client_heard_; }
 
+  /// As ModuleRobot::disables().
+  [[nodiscard]] std::uint32_t disables() const noexcept { return disables_; }
+
   /// A drive does not rest, and the heartbeat is to end with that, until the e-stop is cleared.
   [[nodiscard]] bool heartbeatRests() const noexcept { return heartbeat_rests_; }
   /// Begin of the e-stop in force, which the end of rc10d does not end.
@@ -164,6 +167,7 @@ class Supervisor {
   Stop stop_;                ///< Reason why it is not in RUN,
   MonotonicTime stopped_{};  ///< and since when.
   std::uint32_t estops_ = 0;
+  std::uint32_t disables_ = 0;
   std::vector<Axis> axes_;
   PendingEnables pending_;
   std::vector<MotorGroup> groups_;

@@ -236,6 +236,7 @@ bool Supervisor::clearEstop(const Order& order, OrderResult& result, const Tick&
 void Supervisor::disable(std::size_t motor, const Order& order, const Tick& tick) noexcept {
   auto& axis = axes_[motor];
   auto* group = groupOf(motor);
+  if (order.asked != Asked::kUnasked || axis.status() == MotorStatus::kEnabling) ++disables_;
   // Once more lets go of a motor that is still being held or braked; the first time may have been its
   // group's. A request that is repeated since its answer was lost is no second one.
   // One in the tick in which an e-stop begins is no second one either.

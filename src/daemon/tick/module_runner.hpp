@@ -51,6 +51,7 @@ class ModuleRunner : private ModuleRobot {
   [[nodiscard]] const MotorFeedback& feedback(std::size_t motor) const noexcept override;
   [[nodiscard]] MotorStatus status(std::size_t motor) const noexcept override;
   [[nodiscard]] bool obeys(std::size_t motor) const noexcept override;
+  [[nodiscard]] std::uint32_t disables() const noexcept override { return supervisor_.disables(); }
   [[nodiscard]] double speedCeilingRpm(std::size_t motor) const noexcept override {
     return supervisor_.speedCeilingRpm(motor);
   }

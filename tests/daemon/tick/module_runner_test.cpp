@@ -1,118 +1,16 @@
 // Modules in the tick: their inputs, their targets, what they ask for.
 #include "daemon/tick/module_runner.hpp"
 
-#include <functional>
-
 #include <gmock/gmock.h>
 
 #include "blackbox/memory_box.hpp"
-#include "daemon/virtual_robot.hpp"
+#include "daemon/tick/scripted_module.hpp"
 
 namespace rc10::test::module_runner_test {
 namespace {
 
 using ::testing::Contains;
 using ::testing::Field;
-using ::testing::IsEmpty;
-using namespace std::chrono_literals;
-
-using Body = std::function<void(const Tick&, ModuleRobot&)>;
-
-/// A module that does what the test says.
-class Scripted : public Module_Base {
- public:
-  explicit Scripted(Body body)
-      : Module_Base({.inputs = {"speed_rpm", "other"},
-                     .outputs = {"seen_rpm", "senders"},
-                     .events = {{.text = "something"}, {.text = "as expected", .expected = true}}}),
-        body_(std::move(body)) {}
-
-  void update(const Tick& tick, ModuleRobot& robot) noexcept override {
-    setOutput(0, commanded() ? input(0) : kNoSignal);
-    setOutput(1, senderCount());
-    if (body_) body_(tick, robot);
-  }
-
- private:
-  Body body_;
-};
-
-class ScriptedType : public ModuleType {
- public:
-  explicit ScriptedType(Body body = {}) : body_(std::move(body)) {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "scripted"; }
-  [[nodiscard]] std::string_view about() const noexcept override { return "What a test says."; }
-  [[nodiscard]] std::span<const OwnKey> keys() const noexcept override { return {}; }
-  [[nodiscard]] Result<std::unique_ptr<Module_Base>> build(const ModuleSettings&,
-                                                           const RobotOutline&) const override {
-    return std::make_unique<Scripted>(body_);
-  }
-
- private:
-  Body body_;
-};
-
-Target rpm(double value) { return {.mode = ControlMode::kVelocity, .value = value}; }
-
-class ModuleRunnerTest : public ::testing::Test {
- protected:
-  void start(const std::vector<std::pair<const ModuleType*, int>>& types, FlightRecorder* recorder = nullptr,
-             RobotConfig config = twoWheelsAndYaw()) {
-    for (const auto& [type, priority] : types) {
-      ModuleConfig module;
-      module.type = type;
-      module.settings.name = "module" + std::to_string(config.modules.size());
-      module.settings.priority = priority;
-      config.modules.push_back(module);
-    }
-    robot_ = std::make_unique<VirtualRobot>(config, recorder);
-    robot_->run(10);
-  }
-  void enable() { (void)robot_->order(Operation::kEnable); }
-  void signal(const char* client, int priority, double value, Duration validity = 50ms) {
-    SignalMessage message;
-    message.client = client;
-    message.session = 7;
-    message.priority = priority;
-    message.received = robot_->now();
-    message.deadline = robot_->now() + validity;
-    message.values.fill(kNoSignal);
-    message.values[0] = value;
-    ASSERT_TRUE(robot_->exchange().signals.push(message));
-  }
-  double senders() { return robot_->snapshot().modules[0].outputs[1]; }
-  double seen(std::size_t module = 0) { return robot_->snapshot().modules[module].outputs[0]; }
-
-  std::unique_ptr<VirtualRobot> robot_;
-  /// Module that turns motor 0, while `turns_` says so.
-  bool turns_ = true;
-  ScriptedType turning_{[this](const Tick&, ModuleRobot& robot) {
-    if (turns_) robot.setTarget(0, rpm(50.0));
-  }};
-  /// Module that turns motors 0 and 1 as its input says.
-  ScriptedType following_{[](const Tick&, ModuleRobot& robot) {
-    const double asked_rpm = robot.read({.module = 0, .signal = 0});
-    if (std::isnan(asked_rpm)) return;
-    for (const std::size_t motor : {0U, 1U}) robot.setTarget(motor, rpm(asked_rpm));
-  }};
-
-  bool follows() { return robot_->motor(0).acting == Acting::kTarget; }
-  /// Nothing acts until the next message, which does.
-  void expectNothingUntilANewerMessage() {
-    ASSERT_EQ(robot_->motor(0).status, MotorStatus::kActive);
-    (void)robot_->events();
-    for (int i = 0; i < 100; ++i) {
-      robot_->tick();
-      ASSERT_FALSE(follows()) << "after " << i << " ticks";
-      ASSERT_EQ(robot_->motor(0).owner.view(), "");
-      ASSERT_FALSE(std::isnan(seen())) << "it is still valid";
-    }
-    EXPECT_THAT(robot_->events(), IsEmpty()) << "no mistake of the module";
-    signal("planner", 0, 2.0);
-    robot_->run(2);
-    EXPECT_TRUE(follows());
-  }
-};
 
 TEST_F(ModuleRunnerTest, AModuleTurnsMotorsAsAClientWithItsNameAndPriority) {
   const ScriptedType type{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(50.0)); }};
@@ -284,106 +182,7 @@ TEST_F(ModuleRunnerTest, AModuleGivesALaterOneItsInputInTheSameTick) {
   EXPECT_TRUE(std::isnan(seen(1)));
 }
 
-TEST_F(ModuleRunnerTest, InputsFromBeforeEnablingDoNotActAfterIt) {
-  start({{&following_, 0}});
-  signal("planner", 0, 2.0, 1000ms);
-  robot_->run(300);
-  enable();
-  expectNothingUntilANewerMessage();
-}
-
-TEST_F(ModuleRunnerTest, InputsFromBeforeAnEstopDoNotActAfterAnotherEnabling) {
-  start({{&following_, 0}});
-  enable();
-  signal("planner", 0, 2.0, 1000ms);
-  robot_->run(300);
-  ASSERT_TRUE(follows());
-  (void)robot_->order(Operation::kEstop);
-  Order clear;
-  clear.id = 1;
-  clear.operation = Operation::kClear;
-  clear.whole_robot = true;
-  (void)robot_->carryOut(clear);
-  enable();
-  expectNothingUntilANewerMessage();
-}
-
-TEST_F(ModuleRunnerTest, InputsFromBeforeOneOfItsMotorsWasEnabledMoveNoneOfThem) {
-  start({{&following_, 0}});
-  (void)robot_->orderFor(MotorSet{0b001}, Operation::kEnable);
-  signal("planner", 0, 2.0, 1000ms);
-  robot_->run(300);
-  (void)robot_->orderFor(MotorSet{0b010}, Operation::kEnable);
-  expectNothingUntilANewerMessage();
-}
-
-TEST_F(ModuleRunnerTest, InputsFromBeforeAGroupIsArmedAnewDoNotActAfterIt) {
-  auto config = twoWheelsAndYaw();
-  config.groups.push_back(leftAndRight(GroupConfig::Return::kRearmAtRest));
-  start({{&following_, 0}}, nullptr, config);
-  enable();
-  signal("planner", 0, 2.0, 1000ms);
-  robot_->run(100);
-  ASSERT_TRUE(follows());
-  robot_->freezeBus(0, true);
-  robot_->run(50);
-  ASSERT_EQ(robot_->motor(0).status, MotorStatus::kOffline);
-  robot_->freezeBus(0, false);
-  for (int i = 0; i < 500 && robot_->motor(0).status != MotorStatus::kActive; ++i) robot_->tick();
-  expectNothingUntilANewerMessage();
-}
-
-TEST_F(ModuleRunnerTest, InputsThatAnotherModulePassesOnAreAsOldAsThoseThatItGot) {
-  const ScriptedType passing{[](const Tick&, ModuleRobot& robot) {
-    const double asked_rpm = robot.read({.module = 0, .signal = 0});
-    if (!std::isnan(asked_rpm)) robot.send({.module = 1, .signal = 0}, asked_rpm);
-  }};
-  const ScriptedType driven{[](const Tick&, ModuleRobot& robot) {
-    const double asked_rpm = robot.read({.module = 1, .signal = 0});
-    if (!std::isnan(asked_rpm)) robot.setTarget(0, rpm(asked_rpm));
-  }};
-  start({{&passing, 5}, {&driven, 0}});
-  signal("planner", 0, 2.0, 1000ms);
-  robot_->run(300);
-  enable();
-  expectNothingUntilANewerMessage();
-}
-
 // Its driver's last frame may be as old as lost_ms.
-TEST_F(ModuleRunnerTest, WhatARemotePassesOnIsAsOldAsItsLastFrame) {
-  MonotonicTime frame{};
-  const ScriptedType remote{[&](const Tick&, ModuleRobot& robot) {
-    robot.hearClient(frame);
-    robot.send({.module = 1, .signal = 0}, 2.0);
-  }};
-  const ScriptedType driven{[](const Tick&, ModuleRobot& robot) { robot.setTarget(0, rpm(2.0)); }};
-  start({{&remote, 5}, {&driven, 0}});
-  frame = robot_->now();
-  robot_->run(10);
-  enable();
-  robot_->run(50);
-  EXPECT_FALSE(follows());
-  frame = robot_->now();
-  robot_->run(2);
-  EXPECT_TRUE(follows());
-}
-
-TEST_F(ModuleRunnerTest, AModuleIsToldThatItsMotorDoesNotObeyInputsFromBeforeEnabling) {
-  bool obeys = false;
-  const ScriptedType type{[&](const Tick&, ModuleRobot& robot) { obeys = robot.obeys(0); }};
-  start({{&type, 0}});
-  signal("planner", 0, 2.0, 200ms);
-  robot_->run(50);
-  enable();
-  robot_->run(3);
-  EXPECT_FALSE(obeys);
-  signal("planner", 0, 2.0, 50ms);
-  robot_->run(2);
-  EXPECT_TRUE(obeys);
-  robot_->run(100);
-  EXPECT_TRUE(obeys) << "what it does by itself, as to hold";
-}
-
 TEST_F(ModuleRunnerTest, AModuleReadsWhatAnEarlierOneGivesInTheSameTick) {
   double read = kNoSignal;
   const ScriptedType imu;
