@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "app/units.hpp"
+#include "module/shared_limit.hpp"
 #include "module/travel_of_motors.hpp"
 
 namespace rc10 {
@@ -115,9 +117,15 @@ class Feeder : public Module_Base {
       shots_left_deg_ = 0.0;
       return 0.0;
     }
-    if (shots_left_deg_ > 0.0) return limit_rpm_;
+    const double limit_rpm = limitRpm(robot);
+    if (shots_left_deg_ > 0.0) return limit_rpm;
     const double velocity_rpm = input(kVelocityRpm);
-    return std::isfinite(velocity_rpm) ? std::clamp(velocity_rpm, -limit_rpm_, limit_rpm_) : 0.0;
+    return std::isfinite(velocity_rpm) ? std::clamp(velocity_rpm, -limit_rpm, limit_rpm) : 0.0;
+  }
+
+  // A motor that reduced mode slows is not jammed.
+  [[nodiscard]] double limitRpm(const ModuleRobot& robot) const noexcept {
+    return sharedLimitRpm(robot, std::span{&motor_, 1}, limit_rpm_);
   }
 
   // `shots` is a count: each step up fires one. Its first value fires nothing.
@@ -152,7 +160,8 @@ class Feeder : public Module_Base {
       case State::kGivenUp: break;
     }
     switch (state_) {
-      case State::kReversing: return turn(robot, std::copysign(reverse_rpm_, -wanted_rpm));
+      case State::kReversing:
+        return turn(robot, std::copysign(std::min(reverse_rpm_, limitRpm(robot)), -wanted_rpm));
       case State::kGivenUp: return turn(robot, 0.0);
       default: return turn(robot, wanted_rpm);
     }

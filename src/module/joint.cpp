@@ -311,6 +311,7 @@ class Joint : public Module_Base {
     return {.total_angle_deg = feedback.total_angle_deg,
             .velocity_rpm = static_cast<double>(feedback.velocity_rpm),
             .current_a = static_cast<double>(feedback.current_a),
+            .speed_ceiling_rpm = robot.speedCeilingRpm(motor_),
             .at_switch = closed >= 0.5,
             .switch_heard = std::isfinite(closed),
             .received = feedback.received,

@@ -81,7 +81,7 @@ JointHoming::Progress JointHoming::goAway(const Measured& measured) noexcept {
     begin(Phase::kTowards, measured);
     return goTowards(measured);
   }
-  push(-config_.velocity_rpm, measured);
+  push(-velocityRpm(measured), measured);
   return Progress::kUnderWay;
 }
 
@@ -99,7 +99,7 @@ JointHoming::Progress JointHoming::goTowards(const Measured& measured) noexcept 
     const bool nearer = towards(start_deg_, measured.total_angle_deg) < -config_.tolerance_deg;
     return nearer ? end(Progress::kNoStop) : meet(measured);
   }
-  push((phase_ == Phase::kAgain ? kSlower : 1.0) * config_.velocity_rpm, measured);
+  push((phase_ == Phase::kAgain ? kSlower : 1.0) * velocityRpm(measured), measured);
   return Progress::kUnderWay;
 }
 
@@ -111,7 +111,7 @@ JointHoming::Progress JointHoming::meet(const Measured& measured) noexcept {
   }
   met_deg_ = here_deg;
   begin(Phase::kBackOff, measured);
-  push(-config_.velocity_rpm, measured);
+  push(-velocityRpm(measured), measured);
   return Progress::kUnderWay;
 }
 
@@ -145,7 +145,7 @@ void JointHoming::adapt(double missing, double gained, double pushed_a) noexcept
 
 // By samples, so that neither a gap of the feedback nor a pause of the process is a standstill.
 JointHoming::Standstill JointHoming::standstill(const Measured& measured, double direction) noexcept {
-  const bool fast = std::fabs(measured.velocity_rpm) > kStill * std::fabs(config_.velocity_rpm);
+  const bool fast = std::fabs(measured.velocity_rpm) > kStill * std::fabs(velocityRpm(measured));
   const double way_deg = std::fabs(measured.total_angle_deg - still_deg_);
   const double pushed_a =
       direction * std::copysign(measured.current_a, measured.current_a * config_.velocity_rpm);
@@ -161,6 +161,10 @@ JointHoming::Standstill JointHoming::standstill(const Measured& measured, double
   if (measured.received - moved_ < config_.stopped) return Standstill::kNone;
   if (std::isnan(pushed_a) || pushed_a >= kPressed * config_.current_a) return Standstill::kPressed;
   return measured.received - rose_ >= config_.stopped + kPatience ? Standstill::kGivenUp : Standstill::kNone;
+}
+
+double JointHoming::velocityRpm(const Measured& measured) const noexcept {
+  return std::clamp(config_.velocity_rpm, -measured.speed_ceiling_rpm, measured.speed_ceiling_rpm);
 }
 
 double JointHoming::towards(double from_deg, double to_deg) const noexcept {

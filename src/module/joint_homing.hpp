@@ -33,6 +33,8 @@ class JointHoming {
     double total_angle_deg = 0.0;
     double velocity_rpm = 0.0;
     double current_a = 0.0;  ///< NaN: the drive does not tell.
+    /// Speed that the reduced mode leaves the motor; infinite: all.
+    double speed_ceiling_rpm = std::numeric_limits<double>::infinity();
     bool at_switch = false;
     bool switch_heard = true;  ///< Homing ends without it: the axis would run over the end.
     MonotonicTime received{};  ///< Time of the sample: a standstill lasts from sample to sample.
@@ -70,6 +72,8 @@ class JointHoming {
   void adapt(double missing, double gained, double pushed_a) noexcept;
   /// `direction`: of the current, 1: towards the end.
   [[nodiscard]] Standstill standstill(const Measured& measured, double direction) noexcept;
+  /// Of the homing, or as much of it as the reduced mode leaves.
+  [[nodiscard]] double velocityRpm(const Measured& measured) const noexcept;
   /// Way from `from_deg` to `to_deg`, positive towards the end.
   [[nodiscard]] double towards(double from_deg, double to_deg) const noexcept;
 

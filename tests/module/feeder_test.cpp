@@ -96,6 +96,36 @@ TEST_F(Feeder, FiresAsManyShotsAsTheCountRises) {
   EXPECT_NEAR(robot_.motor(0).feedback.total_angle_deg, 90.0, 1.0);
 }
 
+TEST_F(Feeder, TheSpeedOfReducedModeIsNoJam) {
+  robot_.motor(0).speed_ceiling_rpm = 5.0;
+  ask(60.0);
+  run(1000);
+  EXPECT_EQ(target(), 5.0);
+  EXPECT_EQ(state(), kFeeding);
+  EXPECT_THAT(events_, IsEmpty());
+}
+
+TEST_F(Feeder, ShotsInReducedModeAreFedAtItsSpeed) {
+  robot_.motor(0).speed_ceiling_rpm = 5.0;
+  ask(kNoSignal, 0.0);
+  run(1);
+  ask(kNoSignal, 1.0);
+  run(1000);
+  EXPECT_EQ(target(), 5.0);
+  run(600);
+  EXPECT_EQ(state(), kIdle);
+  EXPECT_NEAR(robot_.motor(0).feedback.total_angle_deg, 45.0, 1.0);
+  EXPECT_THAT(events_, IsEmpty());
+}
+
+TEST_F(Feeder, AJamInReducedModeIsAnsweredAtItsSpeed) {
+  robot_.motor(0).speed_ceiling_rpm = 5.0;
+  ask(30.0);
+  run(101, true);
+  ASSERT_EQ(state(), kReversing);
+  EXPECT_EQ(target(), -5.0);
+}
+
 TEST_F(Feeder, AJamIsAnsweredByGoingBackAndFeedingGoesOnOnceItIsFree) {
   ask(30.0);
   run(50);

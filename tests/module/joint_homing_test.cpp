@@ -262,6 +262,20 @@ TEST_F(HomingJoint, ACurrentThatRisesSlowlyIsWaitedFor) {
   EXPECT_NEAR(angle(), -30.0, 0.01);
 }
 
+TEST(JointHoming, TheSpeedOfReducedModeIsNoStandstillAndIsNotPushedAgainst) {
+  JointHoming homing{
+      {.velocity_rpm = -10.0, .current_a = 0.5, .away_deg = 20.0, .stopped = 200ms, .timeout = 10s}};
+  JointHoming::Measured measured{.velocity_rpm = 0.5, .current_a = 0.5, .speed_ceiling_rpm = 0.5};
+  measured.received = measured.now = MonotonicTime{1s};
+  homing.start(measured);
+  for (int i = 0; i < 2000; ++i) {
+    measured.total_angle_deg += 0.5 * 6.0 * 0.001;
+    measured.received = measured.now += 1ms;
+    ASSERT_EQ(homing.step(measured), JointHoming::Progress::kUnderWay);
+    ASSERT_EQ(homing.current(), 0.0) << "after " << i << " ms";
+  }
+}
+
 TEST(JointHoming, AGapOfTheFeedbackWhereItTurnsRoundIsNoStandstill) {
   JointHoming homing(
       {.velocity_rpm = -5.0, .current_a = 1.0, .away_deg = 3.0, .stopped = 100ms, .timeout = 10s});
