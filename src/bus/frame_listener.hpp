@@ -18,12 +18,14 @@ struct PayloadDiscriminator {
 };
 
 /// A set of data frames a device listens to: `(frame.id & mask) == (id & mask)` among the standard or
-/// the extended ids, and the discriminator if there is one: a payload too short to have the byte is not
+/// the extended ids, and the discriminators if there are any: a payload too short to have the byte is not
 /// in the set. Remote and error frames belong to no device.
 struct FrameFilter {
   CanId id;
   std::uint32_t mask = kExtendedIdMask;  ///< RobStride carries the motor id inside a varying extended id.
   std::optional<PayloadDiscriminator> discriminator{};
+  std::optional<PayloadDiscriminator>
+      also{};  ///< Second byte, only beside the first: the operation of an id.
 };
 
 /// True if some frame could satisfy both filters.

@@ -53,6 +53,18 @@ TEST(FrameFilter, RefusesAFrameTooShortToHaveTheByte) {
   EXPECT_TRUE(accepts(filter, frameWith({0x11, false}, {1, 2, 0})));
 }
 
+TEST(FrameFilter, ASecondByteMustFitAsWell) {
+  FrameFilter filter = withByte(standardFilter(0x7FF), 0, 0xFF, 1);
+  filter.also = PayloadDiscriminator{.byte_index = 2, .value = 0x55};
+  EXPECT_TRUE(accepts(filter, frameWith({0x7FF, false}, {1, 0, 0x55, 9})));
+  EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {1, 0, 0x33, 9})));
+  EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {2, 0, 0x55, 9})));
+  EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {1, 0})));
+  EXPECT_TRUE(overlaps(filter, withByte(standardFilter(0x7FF), 2, 0xFF, 0x55)));
+  EXPECT_FALSE(overlaps(filter, withByte(standardFilter(0x7FF), 2, 0xFF, 0x33)));
+  EXPECT_FALSE(overlaps(withByte(standardFilter(0x7FF), 0, 0xFF, 2), filter));
+}
+
 TEST(FrameFilter, AcceptsNeitherRemoteNorErrorFrames) {
   CanFrame frame = frameWith({0x4, false});
   frame.type = FrameType::kRemote;

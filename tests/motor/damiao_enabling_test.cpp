@@ -74,6 +74,21 @@ TEST(DamiaoMotor, ADriveThatDoesNotTakeItsModeOrWatchdogIsNotEnabled) {
   }
 }
 
+TEST(DamiaoMotor, AScaleThatIsWrittenAfterItHasBeenReadEndsTheEnabling) {
+  for (int ticks = 1; ticks < 30; ++ticks) {
+    DamiaoDesk desk(damiaoSettingsOf());
+    desk.motor().order(FrameKind::kEnable);
+    desk.run(ticks);
+    const auto written = damiao::writeRegister(1, damiao::Register::kTMax, damiao::bitsOf(28.0F));
+    desk.registers[23] = damiao::bitsOf(28.0F);
+    (void)desk.give(written);
+    desk.run(100);
+    EXPECT_EQ(desk.motor().sequenceProgress(), SequenceProgress::kFailed) << ticks;
+    EXPECT_EQ(desk.motor().complaint().native_code, 0x117U) << ticks;
+    for (const auto& frame : desk.tickAnswered()) EXPECT_TRUE(isDisable(frame)) << ticks;
+  }
+}
+
 TEST(DamiaoMotor, WhileEnablingNothingButRestRegistersInRamAndOneEnableLeaves) {
   std::mt19937 generator(1);
   for (int round = 0; round < 50; ++round) {

@@ -104,6 +104,17 @@ TEST(DamiaoFamily, AGainThatTheDriveCannotBeToldIsRefused) {
   EXPECT_TRUE(problemOf(settings).empty());
 }
 
+TEST(DamiaoFamily, TheReportedCurrentEndsWhereTheConfiguredScaleDoes) {
+  auto settings = damiaoSettingsOf("DM10010");
+  const auto traits = [&settings] { return damiaoFamily().traits(settings.model, settings.own); };
+  const float whole_a = 200.0F / traits().torque_nm_per_a;
+  EXPECT_NEAR(traits().frozen_a, whole_a, 1e-3F);
+  settings.own.set("t_max_nm", 20.0);
+  EXPECT_NEAR(traits().frozen_a, whole_a / 10.0F, 1e-3F);
+  EXPECT_NEAR(traits().frozen_a, 7.70F, 0.01F);
+  EXPECT_EQ(traits().signed_a, traits().frozen_a);
+}
+
 TEST(DamiaoFamily, TheBusUseNamesEveryIdThatADriveTakesAsItsOwn) {
   const auto use = damiaoFamily().busUse(damiaoSettingsOf("DM4310", "velocity", 4));
   const auto obeys = [&use](std::uint32_t id, std::uint8_t first = 0) {

@@ -216,6 +216,24 @@ TEST_F(LKTechMotor, AnotherControllersCommandIsNeverFeedback) {
   EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
 }
 
+TEST_F(LKTechMotor, ACopyOfACommandThatItWasNotSentIsSomebodyElses) {
+  comeOnline();
+  for (const char* text : {"141#8000000000000000", "141#8100000000000000", "141#8800000000000000",
+                           "141#8C00000000000000", "141#9B00000000000000"})
+    EXPECT_EQ(hear(frameOf(text)), FrameVerdict::kForeign) << text;
+  motor_->order(FrameKind::kEnable);
+  (void)tick();
+  hear(frameOf("141#9A1E600964001000"));  // off
+  EXPECT_THAT(tick(), Contains("141#8800000000000000"));
+  CanFrame here = frameOf("141#8800000000000000");
+  here.sent_here = true;
+  EXPECT_EQ(hear(here), FrameVerdict::kForeign) << "the drive is not on this computer";
+  EXPECT_EQ(hear(frameOf("141#8800000000000000")), FrameVerdict::kAccepted);
+  hear(frameOf("141#9A1E600964000000"));
+  for (int i = 0; i < 101; ++i) (void)tick();
+  EXPECT_EQ(hear(frameOf("141#8800000000000000")), FrameVerdict::kForeign) << "no longer the copy of ours";
+}
+
 TEST_F(LKTechMotor, AFreezingMotorIsUnderstoodAndACommandFromThisComputerStillIsNot) {
   comeOnline();
   hear(frameOf("141#9A00600964000000"));  // 0 degC
@@ -312,7 +330,7 @@ TEST_F(LKTechMotor, EnablingTurnsTheDriveOnAndMakesSureThatItObeys) {
   const auto second = tick();
   EXPECT_THAT(second, Contains("141#8800000000000000"));
   EXPECT_EQ(second.at(0), "141#A100000000000000") << "without torque";
-  hear(frameOf("141#8800000000000000"));
+  EXPECT_EQ(hear(frameOf("141#8800000000000000")), FrameVerdict::kAccepted);
   EXPECT_EQ(motor_->sequenceProgress(), SequenceProgress::kPending) << "a copy proves nothing";
   hear(frameOf("141#9A1E600964000000"));
   EXPECT_THAT(tick(), Contains("141#9200000000000000"));

@@ -85,7 +85,25 @@ bool DamiaoEnabling::asPlanned(const damiao::RegisterReply& reply) const noexcep
   return false;
 }
 
+bool DamiaoEnabling::confirmed(Register address) const noexcept {
+  if (sequence_.failed()) return false;
+  const auto past = [this](Step last) { return sequence_.done() || sequence_.step() > last; };
+  switch (address) {
+    case Register::kPMax: return past(kReadPMax);
+    case Register::kVMax: return past(kReadVMax);
+    case Register::kTMax: return past(kReadTMax);
+    case Register::kControlMode: return past(kReadControl);
+    case Register::kTimeout: return past(kReadTimeout);
+    default: return false;
+  }
+}
+
 void DamiaoEnabling::onReply(const damiao::RegisterReply& reply) noexcept {
+  if (confirmed(reply.address)) {
+    if (asPlanned(reply)) return;
+    culprit_ = reply.address;
+    return sequence_.fail();
+  }
   const Step step = sequence_.step();
   if (step == kReadPosition || !sequence_.awaits() || registerOf(step) != reply.address) return;
   const bool writes = step == kWriteControl || step == kWriteTimeout;

@@ -32,6 +32,8 @@ class DamiaoEnabling {
   /// Unanswered for too long: no more.
   void update(MonotonicTime now) noexcept;
   void onStatus(std::uint8_t status) noexcept;
+  /// Any answer about a register, to whomever: one that contradicts what has been confirmed fails the
+  /// sequence, also after its end.
   void onReply(const damiao::RegisterReply& reply) noexcept;
   /// Whether the drive's own count is known now.
   void onPosition(bool known) noexcept;
@@ -61,6 +63,8 @@ class DamiaoEnabling {
   [[nodiscard]] std::optional<damiao::Register> registerOf(Step step) const noexcept;
   [[nodiscard]] Request request() const noexcept;
   [[nodiscard]] bool asPlanned(const damiao::RegisterReply& reply) const noexcept;
+  /// The drive has told the planned value already.
+  [[nodiscard]] bool confirmed(damiao::Register address) const noexcept;
   void next() noexcept;
   void fail() noexcept;
 

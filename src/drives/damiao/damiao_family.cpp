@@ -153,7 +153,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.rotor_inertia_kg_m2 = model.rotor_inertia_kg_m2;
   traits.phase_resistance_ohm = model.phase_resistance_ohm;
   traits.absolute = model.output_encoder;
-  traits.frozen_a = static_cast<float>(model.scale.t_max_nm) / model.torque_nm_per_a;
+  traits.frozen_a = static_cast<float>(scaleOf(model, own).t_max_nm) / model.torque_nm_per_a;
   traits.signed_a = traits.frozen_a;
   if (!boundsCurrent(control))
     traits.unseen_limit_remedy =
@@ -239,6 +239,11 @@ BusUse DamiaoFamily::busUse(const MotorSettings& settings) const {
   // One id for each control mode. The drive also takes others that end in its id; devices may have those.
   for (std::uint32_t mode = 0; mode < 4; ++mode)
     use.steers.push_back({.id = {mode * 0x100U + id, false}, .mask = kStandardIdMask});
+  // A register that is written may be a scale, the control mode or the watchdog.
+  use.steers.push_back({.id = {damiao::kRegisterId, false},
+                        .mask = kStandardIdMask,
+                        .discriminator = PayloadDiscriminator{.byte_index = 0, .value = byte},
+                        .also = PayloadDiscriminator{.byte_index = 2, .value = damiao::kWriteOperation}});
   use.feedback = {{master_id, shape(8), per_second}};
   use.commands = {{control_id, shape(own.control == DamiaoControl::kVelocity ? 4 : 8), per_second}};
   return use;

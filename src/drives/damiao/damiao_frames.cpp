@@ -8,9 +8,6 @@
 namespace rc10::damiao {
 namespace {
 
-constexpr std::uint8_t kRead = 0x33;
-constexpr std::uint8_t kWrite = 0x55;
-constexpr std::uint8_t kSave = 0xAA;
 constexpr std::uint8_t kLastRegister = 81;
 
 constexpr double full(unsigned bits) noexcept { return static_cast<double>((1U << bits) - 1U); }
@@ -89,15 +86,15 @@ Payload forcePosition(float position_rad, double limit_rad_s, double current_pu)
   return out;
 }
 
-Payload readRegister(int id, Register address) noexcept { return registerFrame(id, kRead, address); }
+Payload readRegister(int id, Register address) noexcept { return registerFrame(id, kReadOperation, address); }
 
 Payload writeRegister(int id, Register address, std::uint32_t value) noexcept {
-  Payload out = registerFrame(id, kWrite, address);
+  Payload out = registerFrame(id, kWriteOperation, address);
   writeLittleEndian(out, 4, value);
   return out;
 }
 
-Payload saveRegisters(int id) noexcept { return registerFrame(id, kSave, Register{1}); }
+Payload saveRegisters(int id) noexcept { return registerFrame(id, kSaveOperation, Register{1}); }
 
 std::array<std::uint8_t, 4> velocity(float rad_s) noexcept {
   std::array<std::uint8_t, 4> out{};
@@ -130,11 +127,13 @@ Payload writeState(int id, const State& state) noexcept {
 std::optional<RegisterReply> readReply(std::span<const std::uint8_t, 8> payload, int id) noexcept {
   if (payload[0] != id || payload[1] != 0 || payload[3] > kLastRegister) return std::nullopt;
   const std::uint8_t operation = payload[2];
-  if (operation != kRead && operation != kWrite && operation != kSave) return std::nullopt;
-  return RegisterReply{.id = payload[0],
-                       .written = operation != kRead,
-                       .address = operation == kSave ? Register{} : static_cast<Register>(payload[3]),
-                       .value = readLittleEndian<std::uint32_t>(payload, 4)};
+  if (operation != kReadOperation && operation != kWriteOperation && operation != kSaveOperation)
+    return std::nullopt;
+  return RegisterReply{
+      .id = payload[0],
+      .written = operation != kReadOperation,
+      .address = operation == kSaveOperation ? Register{} : static_cast<Register>(payload[3]),
+      .value = readLittleEndian<std::uint32_t>(payload, 4)};
 }
 
 std::uint32_t bitsOf(float value) noexcept {

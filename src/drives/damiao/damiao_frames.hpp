@@ -55,6 +55,11 @@ enum class Register : std::uint8_t {
   kOutputPosition = 81,  ///< "xout", rad: goes on over turns, unlike the field in the feedback.
 };
 
+/// Byte 2 of a frame to or about a register.
+inline constexpr std::uint8_t kReadOperation = 0x33;
+inline constexpr std::uint8_t kWriteOperation = 0x55;
+inline constexpr std::uint8_t kSaveOperation = 0xAA;
+
 /// The status in feedback. Those from kFirstFault on are faults.
 inline constexpr std::uint8_t kStatusDisabled = 0;
 inline constexpr std::uint8_t kStatusEnabled = 1;

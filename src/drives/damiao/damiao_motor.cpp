@@ -129,9 +129,11 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
 
 void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
   if (reply.address != damiao::Register::kOutputPosition) {
-    if (sequenceRuns()) {
+    // While it obeys, somebody else has asked or written: targets in another scale would be other torques.
+    if (sequenceRuns() || armed_) {
       enabling_.onReply(reply);
       culprit_ = enabling_.culprit();
+      if (culprit_) armed_ = false;
     }
     return;
   }

@@ -18,9 +18,6 @@ using damiao::Register;
 
 namespace {
 
-constexpr std::uint8_t kReadOperation = 0x33;
-constexpr std::uint8_t kWriteOperation = 0x55;
-constexpr std::uint8_t kSaveOperation = 0xAA;
 constexpr std::uint8_t kStateOperation = 0xCC;
 constexpr std::uint8_t kDriveC = 30;
 constexpr auto kTimeoutStep = std::chrono::microseconds{50};
@@ -206,18 +203,18 @@ void DamiaoDrive::send(const damiao::Payload& payload) noexcept {
 
 void DamiaoDrive::receiveRegister(std::span<const std::uint8_t, 8> payload) noexcept {
   const std::uint8_t address = payload[3];
-  if (payload[2] == kWriteOperation) {
+  if (payload[2] == damiao::kWriteOperation) {
     const auto value = readLittleEndian<std::uint32_t>(payload, 4);
     if (write(address, value)) send(damiao::writeRegister(id_, static_cast<Register>(address), value));
     return;
   }
-  if (payload[2] == kSaveOperation) {
+  if (payload[2] == damiao::kSaveOperation) {
     if (armed_) return;
     saved_ = registers_;
     return send(damiao::saveRegisters(id_));
   }
   if (payload[2] == kStateOperation) return sendState();
-  if (payload[2] != kReadOperation) return;
+  if (payload[2] != damiao::kReadOperation) return;
   std::uint32_t value = 0;
   const auto& scale = registers_.scale;
   switch (static_cast<Register>(address)) {

@@ -105,13 +105,11 @@ class LktechFamily final : public MotorFamily {
       // Currents; and by one source speeds (0x281), angles (0x282) and a mixture (0x288).
       for (const std::uint32_t id : {lktech::kGroupId, 0x281U, 0x282U, 0x288U}) use.obeys.push_back(one(id));
     }
-    // 0xA0 to 0xA8 move it; 0x80 and 0x81 switch it off and stop it.
-    use.steers = {FrameFilter{.id = {own_id, false},
-                              .mask = kStandardIdMask,
-                              .discriminator = PayloadDiscriminator{0, 0xF0, 0xA0}},
-                  FrameFilter{.id = {own_id, false},
-                              .mask = kStandardIdMask,
-                              .discriminator = PayloadDiscriminator{0, 0xFE, 0x80}}};
+    // 0xA0 to 0xAF move it; 0x80 and 0x81 switch it off and stop it, 0x88 and 0x8C switch it on and brake it,
+    // 0x9B clears the error that has stopped it.
+    for (const auto code : {PayloadDiscriminator{0, 0xF0, 0xA0}, PayloadDiscriminator{0, 0xFE, 0x80},
+                            PayloadDiscriminator{0, 0xFB, 0x88}, PayloadDiscriminator{0, 0xFF, 0x9B}})
+      use.steers.push_back({.id = {own_id, false}, .mask = kStandardIdMask, .discriminator = code});
     use.steers.insert(use.steers.end(), use.obeys.begin() + 1, use.obeys.end());
     use.feedback = {{.id = {own_id, false}, .shape = {}, .per_second = told_hz + kQueriesHz}};
     if (grouped) {

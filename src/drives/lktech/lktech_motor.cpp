@@ -16,6 +16,8 @@ constexpr double kLktechNoLimitDegS = 65535.0;
 
 constexpr Duration kLktechStepPatience = std::chrono::milliseconds{50};
 constexpr int kLktechStepTries = 5;
+// Two queries long: a drive that is on has answered by then.
+constexpr Duration kLktechCopyWithin = std::chrono::milliseconds{100};
 constexpr Duration kLktechQuerySpacing = std::chrono::milliseconds{50};
 constexpr Duration kLktechUrgentQuerySpacing = std::chrono::milliseconds{10};
 /// A frame with the shape of a command is a reply only if the motor is known to be about so cold.
@@ -81,13 +83,16 @@ FrameVerdict LKTech_Motor::updateFeedback(const CanFrame& frame) noexcept {
       takeStatus(frame);
       break;
     case lktech::Code::kAngle: takeTurns(frame); break;
-    case lktech::Code::kOn:
-      break;  // the copy of our command
+    case lktech::Code::kOn: return copiesOurs(frame) ? FrameVerdict::kAccepted : verdictOnCommand();
     // Frames that rc10d never sends: another controller's command or question, and the drive's copy of it or
     // answer.
     default: return lktech::looksLikeCommand(frame.payload()) ? verdictOnCommand() : FrameVerdict::kAccepted;
   }
   return FrameVerdict::kAccepted;
+}
+
+bool LKTech_Motor::copiesOurs(const CanFrame& frame) const noexcept {
+  return !frame.sent_here && switched_on_ && frame.received - *switched_on_ <= kLktechCopyWithin;
 }
 
 double LKTech_Motor::encoderDeg(std::uint16_t raw) const noexcept {
@@ -314,7 +319,9 @@ void LKTech_Motor::sendStep() noexcept {
 
 void LKTech_Motor::runEnabling(const Tick& tick) noexcept {
   release();
-  if (enabling_.asks(tick.now)) sendStep();
+  if (!enabling_.asks(tick.now)) return;
+  if (enabling_.at(Step::kTurnOn)) switched_on_ = tick.now;
+  sendStep();
 }
 
 void LKTech_Motor::answered(Step step) noexcept {

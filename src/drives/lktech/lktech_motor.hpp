@@ -63,6 +63,8 @@ class LKTech_Motor final : public SoloMotor {
   void followAngle(double total_angle_deg) noexcept;
   void release() noexcept;
   [[nodiscard]] int rawOf(double amperes) const noexcept;
+  /// A frame that switches the drive on: its copy of ours, or somebody else's.
+  [[nodiscard]] bool copiesOurs(const CanFrame& frame) const noexcept;
 
   int id_;
   bool grouped_;
@@ -77,6 +79,7 @@ class LKTech_Motor final : public SoloMotor {
   MonotonicTime next_query_{};
   bool ask_turns_ = false;  ///< The next question; else the status.
   bool clear_ = false;
+  std::optional<MonotonicTime> switched_on_;  ///< When the drive was last told to.
 
   // Readings of the drive.
   std::optional<MonotonicTime> heard_;

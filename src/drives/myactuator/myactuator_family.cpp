@@ -116,9 +116,11 @@ class MyactuatorFamily final : public MotorFamily {
     use.sends = {one(myactuator::kReplyBase + id), one(myactuator::kMotionReplyBase + id)};
     use.obeys = {one(myactuator::kRequestBase + id), one(myactuator::kMotionBase + id),
                  one(myactuator::kBroadcastId), one(myactuator::kIdSettingId)};
-    // 0xA0 to 0xAF move it; 0x80 and 0x81 switch it off and stop it.
+    // 0xA0 to 0xAF move it; 0x80 and 0x81 switch it off and stop it; 0x76 restarts it, 0x77 and 0x78 release
+    // and lock its brake.
     for (const auto request : {myactuator::kRequestBase + id, myactuator::kBroadcastId}) {
-      for (const auto code : {PayloadDiscriminator{0, 0xF0, 0xA0}, PayloadDiscriminator{0, 0xFE, 0x80}})
+      for (const auto code : {PayloadDiscriminator{0, 0xF0, 0xA0}, PayloadDiscriminator{0, 0xFE, 0x80},
+                              PayloadDiscriminator{0, 0xFE, 0x76}, PayloadDiscriminator{0, 0xFF, 0x78}})
         use.steers.push_back({.id = {request, false}, .mask = kStandardIdMask, .discriminator = code});
     }
     use.steers.push_back(one(myactuator::kMotionBase + id));

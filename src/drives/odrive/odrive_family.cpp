@@ -115,8 +115,13 @@ class OdriveFamily : public MotorFamily {
     using odrive::Message;
     for (const auto message :
          {Message::kEstop, Message::kSetAxisState, Message::kSetControllerMode, Message::kSetInputPos,
-          Message::kSetInputVel, Message::kSetInputTorque, Message::kSetLimits, Message::kReboot})
+          Message::kSetInputVel, Message::kSetInputTorque, Message::kSetLimits, Message::kReboot,
+          Message::kClearErrors, Message::kSetPosition})
       use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
+    for (const auto message : v06 ? std::array{Message::kEnterDfu, Message::kRxSdo}
+                                  : std::array{Message::kStartAnticogging, Message::kSetNodeId})
+      use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
+    if (v06) use.steers.back().discriminator = PayloadDiscriminator{.value = odrive::kSdoWrite};
 
     const double feedback_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 100.0;
     use.feedback = {{odrive::canId(node, odrive::Message::kEncoderEstimates), FrameShape{}, feedback_hz},

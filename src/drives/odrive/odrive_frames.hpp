@@ -12,6 +12,8 @@ namespace rc10::odrive {
 enum class Message : std::uint8_t {
   kHeartbeat = 0x01,
   kEstop = 0x02,
+  kRxSdo = 0x04,      ///< Firmware 0.6: byte 0 is the operation; 0.5 sends its encoder error here.
+  kSetNodeId = 0x06,  ///< Firmware 0.5; 0.6 tells its address here.
   kSetAxisState = 0x07,
   kEncoderEstimates = 0x09,
   kSetControllerMode = 0x0B,
@@ -19,13 +21,17 @@ enum class Message : std::uint8_t {
   kSetInputVel = 0x0D,
   kSetInputTorque = 0x0E,
   kSetLimits = 0x0F,
+  kStartAnticogging = 0x10,  ///< Firmware 0.5.
   kIq = 0x14,
   kTemperature = 0x15,  ///< Firmware 0.6; 0.5 sends its sensorless estimates here.
   kReboot = 0x16,
   kBusVoltage = 0x17,
   kClearErrors = 0x18,
-  kTorques = 0x1C,  ///< Firmware 0.6; 0.5 answers here with the voltage of a pin.
+  kSetPosition = 0x19,  ///< What the position is called from now on.
+  kTorques = 0x1C,      ///< Firmware 0.6; 0.5 answers here with the voltage of a pin.
+  kEnterDfu = 0x1F,     ///< Firmware 0.6.
 };
+inline constexpr std::uint8_t kSdoWrite = 1;
 inline constexpr std::uint32_t kMessageBits = 5;
 inline constexpr std::uint32_t kNodeMask = 0x7E0;
 

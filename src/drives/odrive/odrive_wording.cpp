@@ -32,6 +32,12 @@ std::string wordOdrive(const CanFrame& frame, std::string_view /*model*/, bool /
     }
     case odrive::Message::kEstop: return FrameWords{node, "e-stop"}.take();
     case odrive::Message::kReboot: return FrameWords{node, "reboot"}.take();
+    case odrive::Message::kStartAnticogging: return FrameWords{node, "start anticogging"}.take();
+    case odrive::Message::kSetPosition: return FrameWords{node, "set position"}.take();
+    case odrive::Message::kEnterDfu: return FrameWords{node, "enter firmware update"}.take();
+    // Other things in the two generations of firmware.
+    case odrive::Message::kRxSdo:
+    case odrive::Message::kSetNodeId: return {};
     case odrive::Message::kClearErrors: return FrameWords{node, "clear errors"}.take();
     case odrive::Message::kSetAxisState:
       if (payload.size() < 4) return {};

@@ -1,5 +1,6 @@
 #include "drives/robstride/robstride_enabling.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -26,6 +27,11 @@ RobstrideEnabling::RobstrideEnabling() noexcept : sequence_(kRobstridePatience, 
 
 void RobstrideEnabling::add(const RobstrideSetting& setting) noexcept {
   if (count_ < settings_.size()) settings_[count_++] = setting;
+}
+
+void RobstrideEnabling::begin() noexcept {
+  sequence_.begin(0);
+  culprit_.reset();
 }
 
 void RobstrideEnabling::advance() noexcept {
@@ -62,7 +68,21 @@ void RobstrideEnabling::onFeedback(const robstride::Feedback& seen) noexcept {
   if (step() == 0 ? seen.mode == 0 : atEnable() && seen.mode == robstride::kRunning) advance();
 }
 
+bool RobstrideEnabling::contradicts(std::uint16_t index, std::uint32_t bits) const noexcept {
+  if (sequence_.failed()) return false;
+  const std::size_t confirmed =
+      sequence_.done() ? count_ : std::min(count_, std::max(step(), std::size_t{1}) - 1);
+  return std::any_of(settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(confirmed),
+                     [&](const RobstrideSetting& each) {
+                       return each.index == index && !each.rewritten && !each.agrees(bits);
+                     });
+}
+
 void RobstrideEnabling::onParameter(std::uint16_t index, bool accepted, std::uint32_t bits) noexcept {
+  if (accepted && contradicts(index, bits)) {
+    culprit_ = index;
+    return sequence_.fail();
+  }
   if (!sequence_.awaits() || !accepted) return;
   if (atSetting()) {
     const auto& setting = settings_[step() - 1];

@@ -180,8 +180,9 @@ class RobstrideFamily final : public MotorFamily {
                              .mask = kExtendedIdMask}};
     // Whatever is addressed to it, of any type.
     use.obeys = {FrameFilter{.id = {drive_id, true}, .mask = 0xFFU}};
-    for (const auto type : {robstride::Type::kOperate, robstride::Type::kEnable, robstride::Type::kStop,
-                            robstride::Type::kSetZero, robstride::Type::kWriteParameter})
+    for (const auto type :
+         {robstride::Type::kOperate, robstride::Type::kEnable, robstride::Type::kStop,
+          robstride::Type::kSetZero, robstride::Type::kSetId, robstride::Type::kWriteParameter})
       use.steers.push_back(
           {.id = {static_cast<std::uint32_t>(type) << 24U | drive_id, true}, .mask = 0x1F00'00FFU});
     const double commands_hz = static_cast<double>(settings.tick_hz) / settings.command_divider;

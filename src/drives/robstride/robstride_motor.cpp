@@ -93,7 +93,8 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
     enabling_.add({.index = parameter::kRunMode, .bits = mode});
   };
   // No current before the first command: whatever reference the drive still has, it stays where it is.
-  const RobstrideSetting no_current = RobstrideSetting::limit(parameter::kCurrentLimit, 0.0F);
+  RobstrideSetting no_current = RobstrideSetting::limit(parameter::kCurrentLimit, 0.0F);
+  no_current.rewritten = true;
   switch (control_) {
     case RobstrideControl::kOperation:
       add_run_mode(static_cast<std::uint8_t>(robstride::RunMode::kOperation));
@@ -101,12 +102,12 @@ RobStride_Motor::RobStride_Motor(const MotorSettings& settings)
       break;
     case RobstrideControl::kCurrent:
       add_run_mode(static_cast<std::uint8_t>(robstride::RunMode::kCurrent));
-      enabling_.add({.index = parameter::kCurrentRef, .bits = 0});
+      enabling_.add({.index = parameter::kCurrentRef, .bits = 0, .rewritten = true});
       break;
     case RobstrideControl::kVelocity:
       add_run_mode(static_cast<std::uint8_t>(robstride::RunMode::kVelocity));
       enabling_.add(no_current);
-      enabling_.add({.index = parameter::kVelocityRef, .bits = 0});
+      enabling_.add({.index = parameter::kVelocityRef, .bits = 0, .rewritten = true});
       break;
     case RobstrideControl::kPosition:
       add_run_mode(model_->position_run_mode);
@@ -305,10 +306,18 @@ SequenceProgress RobStride_Motor::sequenceProgress() const noexcept {
 DriveComplaint RobStride_Motor::complaint() const noexcept {
   const auto native = robstride::nativeCode(fault_word_, seen_.status_bits);
   if (native != 0) return {.fault = robstride::faultOf(native, model_->cyber_gear), .native_code = native};
+  if (const auto index = enabling_.culprit()) {
+    return {.fault = FaultCode::kDriveSetting, .native_code = kParameterComplaint + *index};
+  }
   if (obeying() && feedback_.samples > 0 && seen_.mode != robstride::kRunning) {
     return {.fault = FaultCode::kDriveStopped, .native_code = 0};
   }
   return scaleComplaint();
+}
+
+void RobStride_Motor::clearComplaint() noexcept {
+  clear_ordered_ = true;
+  enabling_.forgive();
 }
 
 }  // namespace rc10

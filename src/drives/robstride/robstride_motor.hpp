@@ -42,10 +42,13 @@ class RobStride_Motor : public SoloMotor {
 
   [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
-  void clearComplaint() noexcept override { clear_ordered_ = true; }
+  void clearComplaint() noexcept override;
   bool setZero(double angle_deg) noexcept override;
   void dropWindup(float least_rpm) noexcept override;
   [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
+
+  /// native_code of a complaint about a parameter: this and its index. Beyond the bits of a drive's faults.
+  static constexpr std::uint32_t kParameterComplaint = 0x4000'0000;
 
  private:
   /// The reference of a run mode, as the drive takes it, and the current that it may use for it.

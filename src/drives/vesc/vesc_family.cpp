@@ -198,7 +198,8 @@ class VescFamily final : public MotorFamily {
       for (const auto packet :
            {Packet::kSetDuty, Packet::kSetCurrent, Packet::kSetCurrentBrake, Packet::kSetErpm,
             Packet::kSetPosition, Packet::kSetCurrentRelative, Packet::kSetCurrentBrakeRelative,
-            Packet::kSetHandbrake, Packet::kSetHandbrakeRelative})
+            Packet::kSetHandbrake, Packet::kSetHandbrakeRelative, Packet::kDetect, Packet::kShutdown,
+            Packet::kSetPositionOffset})
         use.steers.push_back({.id = vesc::canId(packet, id)});
       // A tool at another drive's USB passes its commands on: sender, a flag, then the command.
       for (const auto command : vesc::kPassedCommands)

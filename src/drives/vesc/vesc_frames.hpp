@@ -28,8 +28,11 @@ enum class Packet : std::uint8_t {
   kStatus4 = 16,
   kPing = 17,
   kPong = 18,
+  kDetect = 19,  ///< Turns the motor to measure it.
   kStatus5 = 27,
-  kNotifyBoot = 57,  ///< Sent once when the drive has started; since firmware 6.00.
+  kShutdown = 31,
+  kSetPositionOffset = 55,  ///< Moves the place that its position loop holds.
+  kNotifyBoot = 57,         ///< Sent once when the drive has started; since firmware 6.00.
   kStatus6 = 58,
 };
 
@@ -55,8 +58,9 @@ inline constexpr double kPerDegree = 1e6;
 [[nodiscard]] CanFrame makeCommand(Packet packet, int controller_id, std::int32_t raw) noexcept;
 
 /// Commands that one drive passes on to another (COMM_FORWARD_CAN) in a frame kProcessShortBuffer:
-/// COMM_SET_DUTY, SET_CURRENT, SET_CURRENT_BRAKE, SET_RPM, SET_POS, SET_HANDBRAKE, SET_CURRENT_REL.
-inline constexpr std::array<std::uint8_t, 7> kPassedCommands{5, 6, 7, 8, 9, 10, 84};
+/// COMM_JUMP_TO_BOOTLOADER, SET_DUTY, SET_CURRENT, SET_CURRENT_BRAKE, SET_RPM, SET_POS, SET_HANDBRAKE,
+/// DETECT_MOTOR_R_L, DETECT_ENCODER, DETECT_HALL_FOC, REBOOT, SET_CURRENT_REL.
+inline constexpr std::array<std::uint8_t, 12> kPassedCommands{1, 5, 6, 7, 8, 9, 10, 25, 27, 28, 29, 84};
 
 // Questions that fit into one frame each way: COMM_GET_VALUES_SELECTIVE (50) with one bit
 // of its mask. It moves nothing and feeds no watchdog.
