@@ -54,17 +54,23 @@ void DriveConfiguring::end(Progress progress) noexcept {
   phase_ = Phase::kEnded;
 }
 
+bool DriveConfiguring::wantsSilence() const noexcept {
+  return codec_.setup().saves_in_silence &&
+         (phase_ == Phase::kBeforeSave || phase_ == Phase::kSave || phase_ == Phase::kSaving);
+}
+
+void DriveConfiguring::rename() noexcept {
+  renamed_ = true;
+  if (codec_.idSetting() == value().setting) new_id_ = static_cast<int>(value().value);
+}
+
 void DriveConfiguring::next() noexcept {
-  if (changesIdentity()) {
-    renamed_ = true;
-    if (codec_.idSetting() == value().setting) new_id_ = static_cast<int>(value().value);
-  }
   tries_ = 0;
   if (index_ + 1 < write_.count) {
     ++index_;
     phase_ = Phase::kWrite;
   } else if (write_.save && !codec_.setup().stores_at_once) {
-    phase_ = Phase::kSave;
+    phase_ = codec_.setup().saves_in_silence ? Phase::kBeforeSave : Phase::kSave;
   } else {
     end(Progress::kDone);
   }
@@ -74,7 +80,10 @@ void DriveConfiguring::lookForReading(MonotonicTime now) noexcept {
   if (asWritten()) return next();
   if (changesIdentity()) {
     if (now - sent_at_ < kSilence) return;
-    if (!heard_) return next();
+    if (!heard_) {
+      rename();
+      return next();
+    }
   } else if (!reading_ && now - sent_at_ < kSettingPatience) {
     return;
   }
@@ -105,6 +114,7 @@ void DriveConfiguring::look(MonotonicTime now) noexcept {
       break;
     case Phase::kRead: lookForReading(now); break;
     case Phase::kSaving: lookForSaving(now); break;
+    case Phase::kBeforeSave:
     case Phase::kWrite:
     case Phase::kSave:
     case Phase::kEnded: break;
@@ -126,7 +136,12 @@ std::size_t DriveConfiguring::pack(MonotonicTime now, std::span<CanFrame> out) n
       frame = codec_.read(value().setting);
       if (frame) phase_ = Phase::kRead;
       break;
+    case Phase::kBeforeSave:
+      phase_ = Phase::kSave;
+      sent_at_ = now;
+      return 0;
     case Phase::kSave:
+      if (codec_.setup().saves_in_silence && now - sent_at_ < kSettling) return 0;
       frame = codec_.save(new_id_);
       phase_ = Phase::kSaving;
       ++tries_;

@@ -32,12 +32,16 @@ class DriveConfiguring {
   /// Frames of this tick: at most one.
   [[nodiscard]] std::size_t pack(MonotonicTime now, std::span<CanFrame> out) noexcept;
 
+  /// Nothing else may be sent to the drive, which is at rest: the next frame of it is the answer to the save
+  /// frame.
+  [[nodiscard]] bool wantsSilence() const noexcept;
+
   [[nodiscard]] Progress progress() const noexcept { return progress_; }
   /// Which of the values it is at, or failed at.
   [[nodiscard]] std::size_t index() const noexcept { return index_; }
 
  private:
-  enum class Phase : std::uint8_t { kWrite, kWritten, kRead, kSave, kSaving, kEnded };
+  enum class Phase : std::uint8_t { kWrite, kWritten, kRead, kBeforeSave, kSave, kSaving, kEnded };
 
   [[nodiscard]] const DriveValue& value() const noexcept { return write_.values[index_]; }
   [[nodiscard]] bool changesIdentity() const noexcept;
@@ -46,6 +50,8 @@ class DriveConfiguring {
   void lookForReading(MonotonicTime now) noexcept;
   void lookForSaving(MonotonicTime now) noexcept;
   void next() noexcept;
+  /// The drive no longer answers under its old identity.
+  void rename() noexcept;
   void end(Progress progress) noexcept;
 
   const DriveCodec& codec_;
@@ -58,7 +64,7 @@ class DriveConfiguring {
   std::optional<double> reading_;
   bool heard_ = false;  ///< Any frame of the drive since the last one to it.
   bool saved_ = false;
-  std::optional<int> new_id_;
+  std::optional<int> new_id_;  ///< It answers under this one by now, not only after a restart.
   bool renamed_ = false;
 };
 

@@ -25,7 +25,9 @@ struct DriveSetting {
 struct DriveSetup {
   std::span<const DriveSetting> settings{};
   bool stores_at_once = false;  ///< There is no writing without storing.
-  std::string_view tool;        ///< "VESC Tool", for people.
+  /// It answers the save frame as it answers others: none of those may be under way meanwhile.
+  bool saves_in_silence = false;
+  std::string_view tool;  ///< "VESC Tool", for people.
 };
 
 struct DriveValue {

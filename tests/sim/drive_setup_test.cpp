@@ -186,6 +186,36 @@ TEST_F(DriveSetupTest, NoTorqueAndNoCommandWhileItGoesOn) {
   EXPECT_GT(told, 0);
 }
 
+// Damiao: an id counts from the next start on.
+TEST_F(DriveSetupTest, ANewDamiaoIdIsStoredUnderTheOldOneWhichAnswersOn) {
+  useDamiao();
+  begin("id", 5, true);
+  EXPECT_EQ(finish(), Progress::kDone);
+  const auto frames = sent();
+  EXPECT_THAT(frames, Contains("7FF#0200AA0100000000"));
+  EXPECT_THAT(frames, Not(Contains("7FF#0500AA0100000000"))) << "another drive may have it";
+  rig->drive().restart();
+  rig->run(std::chrono::milliseconds{5});
+  (void)rig->takeReceived();
+  rig->drive().receive(makeClassicFrame({0x7FF, false}, damiao::readRegister(5, damiao::Register::kId)));
+  rig->run(std::chrono::milliseconds{1});
+  std::vector<std::string> answers;
+  for (const auto& frame : rig->takeReceived()) answers.push_back(frameText(frame));
+  EXPECT_THAT(answers, Contains("012#0500330805000000"));
+}
+
+TEST_F(DriveSetupTest, ANewIdOfADamiaoThatDoesNotSayThatItIsStoredIsTold) {
+  for (const auto& [name, value] : {std::pair{"id", 5.0}, std::pair{"master_id", 21.0}}) {
+    useDamiao();
+    rig->garble([](CanFrame& frame) {
+      if (frame.data[2] == damiao::kSaveOperation) frame.length = 0;
+    });
+    begin(name, value, true);
+    EXPECT_EQ(finish(), Progress::kNotSaved) << name;
+    EXPECT_EQ(times("7FF#0200AA0100000000"), 3) << name;
+  }
+}
+
 TEST_F(DriveSetupTest, ARobStrideParameterIsWrittenReadBackAndStored) {
   useRobStride();
   begin("timeout_ms", 1000, true);
@@ -194,6 +224,38 @@ TEST_F(DriveSetupTest, ARobStrideParameterIsWrittenReadBackAndStored) {
   EXPECT_THAT(frames, Contains("1200FD03#28700000204E0000")) << "20000 is 1 s";
   EXPECT_THAT(frames, Contains("1100FD03#2870000000000000"));
   EXPECT_THAT(frames, Contains("1600FD03#0102030405060708"));
+}
+
+// Its answer to any frame is that to the save frame, too.
+TEST_F(DriveSetupTest, ARobStrideThatMissesTheSaveFrameIsNotTakenToHaveStored) {
+  useRobStride();
+  rig->lose([](const CanFrame& frame) { return frameText(frame).starts_with("1600FD"); });
+  begin("timeout_ms", 1000, true);
+  EXPECT_EQ(finish(), Progress::kNotSaved);
+  EXPECT_EQ(times("1600FD03#0102030405060708"), 3);
+}
+
+TEST_F(DriveSetupTest, AroundTheSaveFrameOfARobStrideNothingElseIsSentToIt) {
+  useRobStride();
+  bool saved = false;
+  begin("timeout_ms", 1000, true);
+  rig->lose([this, &saved](const CanFrame& frame) {
+    const bool saves = frameText(frame).starts_with("1600FD");
+    const bool goes_on = rig->motor().driveConfiguring()->progress() == Progress::kPending;
+    EXPECT_TRUE(!saved || saves || !goes_on) << frameText(frame);
+    saved = saved || saves;
+    return saves;
+  });
+  EXPECT_EQ(finish(), Progress::kNotSaved);
+  EXPECT_TRUE(saved);
+}
+
+TEST_F(DriveSetupTest, ALateAnswerToTheFrameBeforeIsNoneToTheSaveFrame) {
+  useRobStride();
+  rig->lose([](const CanFrame& frame) { return frameText(frame).starts_with("1600FD"); });
+  rig->delay(std::chrono::milliseconds{5});
+  begin("timeout_ms", 1000, true);
+  EXPECT_EQ(finish(), Progress::kNotSaved);
 }
 
 TEST_F(DriveSetupTest, AReportIntervalIsCountedInStepsOfFive) {
@@ -209,6 +271,9 @@ TEST_F(DriveSetupTest, ANewRobStrideIdIsSeenByTheSilenceOfTheOldOneAndStoredUnde
   EXPECT_EQ(finish(), Progress::kDone);
   const auto frames = sent();
   EXPECT_THAT(frames, Contains("0709FD03#0000000000000000"));
+  std::vector<std::string> answers;
+  for (const auto& frame : rig->takeReceived()) answers.push_back(frameText(frame));
+  EXPECT_THAT(answers, Contains(::testing::StartsWith("000009FE#"))) << "who it is now";
   EXPECT_THAT(frames, Contains("1600FD09#0102030405060708"));
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -36,6 +37,10 @@ class SoloRig {
   }
   /// Change of each frame on its way from the drive to the motor.
   void garble(std::function<void(CanFrame&)> change) { garble_ = std::move(change); }
+  /// Frames of the motor that its drive never gets.
+  void lose(std::function<bool(const CanFrame&)> lost) { lost_ = std::move(lost); }
+  /// Time that a frame of the drive takes to the motor, in whole ticks.
+  void delay(Duration by) { delay_ = by; }
   /// Nothing passes in either direction, from now on.
   void cut(bool cut) { cut_ = cut; }
 
@@ -73,7 +78,7 @@ class SoloRig {
       const auto count = motor_->packCommand(tick, out);
       for (std::size_t i = 0; i < count; ++i) {
         sent_.push_back(out[i]);
-        if (!cut_) drive_->receive(out[i]);
+        if (!cut_ && !(lost_ && lost_(out[i]))) drive_->receive(out[i]);
       }
       drive_->step(2 * kHalfPeriod);
       elapsed_ += 2 * kHalfPeriod;
@@ -96,7 +101,17 @@ class SoloRig {
       frame.received = now_ + kHalfPeriod;
       if (garble_) garble_(frame);
       received_.push_back(frame);
-      if (!cut_ && motor_->matchesFrame(frame)) (void)motor_->updateFeedback(frame);
+      if (!cut_) under_way_.push_back(frame);
+    }
+    arrive();
+  }
+  void arrive() {
+    const MonotonicTime now = now_ + kHalfPeriod;
+    while (!under_way_.empty() && under_way_.front().received + delay_ <= now) {
+      CanFrame frame = under_way_.front();
+      under_way_.pop_front();
+      frame.received = now;
+      if (motor_->matchesFrame(frame)) (void)motor_->updateFeedback(frame);
     }
   }
 
@@ -104,10 +119,13 @@ class SoloRig {
   std::unique_ptr<sim::Drive> drive_;
   std::vector<CanFrame> sent_;
   std::vector<CanFrame> received_;
+  std::deque<CanFrame> under_way_;
+  std::function<bool(const CanFrame&)> lost_;
   std::function<void(CanFrame&)> garble_;
   MonotonicTime now_{std::chrono::hours{1}};
   std::uint64_t ticks_ = 0;
   Duration elapsed_{};
+  Duration delay_{};
   Duration next_feedback_{};
   bool cut_ = false;
 };

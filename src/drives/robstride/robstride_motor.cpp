@@ -271,7 +271,8 @@ std::size_t RobStride_Motor::packCommand(const Tick& tick, std::span<CanFrame> o
     return enabling_.pack(tick.now, codec_, control_ == RobstrideControl::kOperation, out);
   }
   std::size_t count = enabling() || obeying() ? 0 : configuring_.pack(tick.now, out);
-  if (!due(tick)) return count;
+  const bool silent = !enabling() && !obeying() && configuring_.wantsSilence();
+  if (silent || !due(tick)) return count;
   if (obeying() || (enabling() && enabling_.progress() == SequenceProgress::kDone)) {
     count += packReference(tick, out);
   } else {

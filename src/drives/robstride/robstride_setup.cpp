@@ -45,7 +45,8 @@ constexpr std::array kSettingParameters{
 };
 static_assert(kSettingParameters.size() == kRobstrideSettings.size());
 
-constexpr DriveSetup kRobstrideSetup{.settings = kRobstrideSettings, .tool = "RobStride's Motor Studio"};
+constexpr DriveSetup kRobstrideSetup{
+    .settings = kRobstrideSettings, .saves_in_silence = true, .tool = "RobStride's Motor Studio"};
 constexpr DriveSetup kCyberGearSetup{.settings = std::span(kRobstrideSettings).first(1),
                                      .stores_at_once = true,
                                      .tool = "Xiaomi's CyberGear tool"};

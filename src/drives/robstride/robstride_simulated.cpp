@@ -136,7 +136,10 @@ void RobstrideDrive::receive(const CanFrame& frame) noexcept {
     case robstride::Type::kSetZero:
       if (bytes[0] == 1) zeroAt(0.0);
       break;
-    case robstride::Type::kSetId: codec_.drive_id = static_cast<int>(frame.id.value >> 16U & 0x7FU); return;
+    case robstride::Type::kSetId:
+      codec_.drive_id = static_cast<int>(frame.id.value >> 16U & 0x7FU);
+      answer(codec_.identity(kUniqueId));  // as the one that it is now
+      return;
     case robstride::Type::kWriteParameter: write(frame); break;
     case robstride::Type::kSave: save(); break;
     case robstride::Type::kReadParameter: read(readLittleEndian<std::uint16_t>(bytes, 0)); return;
