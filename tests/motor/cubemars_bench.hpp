@@ -49,6 +49,13 @@ class Bench {
     CanFrame frame = mitReply(rad, rad_s, nm, error);
     return motor_.updateFeedback(frame);
   }
+  /// This code of the position, standing.
+  FrameVerdict feedCode(std::uint16_t code) {
+    now_ += milliseconds{1};
+    CanFrame frame = mitReply(0.0, 0.0, 0.0, 0);
+    writeBigEndian(frame.data, 1, code);
+    return motor_.updateFeedback(frame);
+  }
   [[nodiscard]] CanFrame mitReply(double rad, double rad_s, double nm, std::uint8_t error) const {
     const auto code = [](double value, double reach, double last) {
       return static_cast<unsigned>(std::lround((value + reach) / (2 * reach) * last));

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "motor/cubemars_bench.hpp"
+#include "sim/wrapped_code.hpp"
 
 namespace rc10::test::cubemars_mit_test {
 namespace {
@@ -208,15 +209,29 @@ TEST(CubemarsMit, CountsTheTurnsOfItsPositionField) {
   (void)bench.feedMit(0.0);
   for (int i = 0; i < 4000; ++i) {
     rad += 0.01;
-    (void)bench.feedMit(std::remainder(rad, 25.0), 10.0);
+    (void)bench.feedMit(rad, 10.0);
   }
   EXPECT_NEAR(bench.motor().feedback().total_angle_deg, 40.0 * 180.0 / kPi, 0.1);
   for (int i = 0; i < 8000; ++i) {
     rad -= 0.01;
-    (void)bench.feedMit(std::remainder(rad, 25.0), -10.0);
+    (void)bench.feedMit(rad, -10.0);
   }
   EXPECT_NEAR(bench.motor().feedback().total_angle_deg, -40.0 * 180.0 / kPi, 0.1);
   EXPECT_EQ(bench.motor().feedback().jumps, 0U);
+}
+
+// A field of 65536 codes, of which 65535 steps are the range.
+TEST(CubemarsMit, CountsTheTurnsOfItsPositionFieldExactlyHoweverManyTheyAre) {
+  for (const double sign : {1.0, -1.0}) {
+    Mit bench(mit());
+    double farthest_deg = 0.0;
+    for (double rad = 0.0; rad < 2500.0; rad += 0.04) {
+      (void)bench.feedCode(sim::wrappedCode(sign * rad, 12.5, 16));
+      const double off_deg = bench.motor().feedback().total_angle_deg - sign * rad * 180.0 / kPi;
+      farthest_deg = std::max(farthest_deg, std::fabs(off_deg));
+    }
+    EXPECT_LE(farthest_deg, 0.05);
+  }
 }
 
 TEST(CubemarsMit, AShaftFasterThanItsFieldIsReadWithItsSignAndSize) {
@@ -227,7 +242,7 @@ TEST(CubemarsMit, AShaftFasterThanItsFieldIsReadWithItsSignAndSize) {
     (void)bench.command({.mode = ControlMode::kCurrent});
     for (double rad_s = 0.0; rad_s < 80.0; rad_s += 0.1) {
       rad += sign * rad_s * 1e-3;
-      (void)bench.feedMit(std::remainder(rad, 25.0), sign * rad_s);
+      (void)bench.feedMit(rad, sign * rad_s);
       ASSERT_NEAR(bench.motor().feedback().velocity_rpm, sign * rad_s * 30.0 / kPi, 0.3);
       ASSERT_EQ(bench.motor().complaint().fault, FaultCode::kNone) << rad_s;
     }
@@ -245,7 +260,7 @@ TEST(CubemarsMit, AShaftFasterThanItsFieldIsBrakedWithinTheLimit) {
     (void)bench.feedMit(0.0);
     for (double rad_s = 0.0; rad_s < 70.0; rad_s += 0.1) {
       rad += sign * rad_s * 1e-3;
-      (void)bench.feedMit(std::remainder(rad, 25.0), sign * rad_s);
+      (void)bench.feedMit(rad, sign * rad_s);
       const auto frame = bench.command({.mode = ControlMode::kBrake});
       ASSERT_LE(sign * bench.sumNm(frame, 0.0, sign * rad_s), 0.1) << rad_s;
       ASSERT_GE(sign * bench.sumNm(frame, 0.0, sign * rad_s), -4.0 * 9 * 0.091 - 0.2) << rad_s;
@@ -267,7 +282,7 @@ TEST(CubemarsMit, AShaftBeyondAFieldThatIsCutOffIsBrakedWithinTheLimit) {
     (void)bench.feedMit(0.0);
     for (int i = 0; i < 100; ++i) {
       rad += sign * fast_rad_s * 1e-3;
-      (void)bench.feedMit(std::remainder(rad, 25.0), sign * end_rad_s);
+      (void)bench.feedMit(rad, sign * end_rad_s);
     }
     EXPECT_NEAR(bench.motor().feedback().velocity_rpm, sign * end_rad_s * 30.0 / kPi, 0.3);
     const double sum_nm =
@@ -281,7 +296,7 @@ TEST(CubemarsMit, OutsideOfTheFieldAnAngleOnlyDamps) {
   Mit bench(mit());
   double rad = 11.0;
   (void)bench.feedMit(rad);
-  while (rad < 14.0) (void)bench.feedMit(std::remainder(rad += 0.05, 25.0));
+  while (rad < 14.0) (void)bench.feedMit(rad += 0.05);
   const auto command = bench.decode(bench.command({.mode = ControlMode::kTotalAngle, .value = 0.0}));
   EXPECT_EQ(command.stiffness_nm_per_rad, 0.0);
   EXPECT_GT(command.damping_nms_per_rad, 0.0);
@@ -295,7 +310,7 @@ TEST(CubemarsMit, OutsideOfTheFieldAnyDampingOpposesTheShaftWithAllThatIsAllowed
     Mit bench(settings);
     double rad = 11.0;
     (void)bench.feedMit(rad);
-    while (rad < 14.0) (void)bench.feedMit(std::remainder(rad += 0.05, 25.0), 20.0);
+    while (rad < 14.0) (void)bench.feedMit(rad += 0.05, 20.0);
     const auto frame = bench.command(
         {.mode = ControlMode::kImpedance, .stiffness_nm_per_rad = stiffness, .damping_nms_per_rad = 1e30F});
     EXPECT_NEAR(bench.sumNm(frame, std::remainder(rad, 25.0), 20.0), -4.0 * 9 * 0.091, 0.2) << stiffness;

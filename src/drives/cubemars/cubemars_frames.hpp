@@ -80,6 +80,10 @@ struct MitReport {
   std::optional<int> temperature_c;  ///< The oldest firmware sends neither this nor an error.
   std::uint8_t error = 0;
 };
+/// rad after which the field of the position begins anew: 65536 codes, of which 65535 steps are the range.
+[[nodiscard]] constexpr double positionWrapRad(const CubemarsRanges& ranges) noexcept {
+  return 2.0 * ranges.position_rad * 65536.0 / 65535.0;
+}
 /// Nothing if the frame cannot be one: its id is not looked at.
 [[nodiscard]] std::optional<MitReport> readMitReport(const CanFrame& frame,
                                                      const CubemarsRanges& ranges) noexcept;

@@ -116,7 +116,7 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
 // The field goes round at its ends (TMotorCANControl and others count its turns). Half of it is far more
 // than an output shaft turns between two answers.
 double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
-  const double span_rad = 2.0 * own().ranges.position_rad;
+  const double span_rad = cubemars::positionWrapRad(own().ranges);
   if (anew) {
     // A drive that was not restarted still counts the turns outside of the field.
     turns_unknown_ = turns_unknown_ || turns_ != 0;
@@ -143,7 +143,7 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   }
   const double stiffness = sent_[0].stiffness_nm_per_rad;
   const bool springs = obeying() && stiffness > 0.0;
-  const double turn_nm = stiffness * 2.0 * own().ranges.position_rad;
+  const double turn_nm = stiffness * cubemars::positionWrapRad(own().ranges);
   const double apart_nm = kSpringMismatch * std::min(most_nm, turn_nm);
   // Too little torque is not torque the other way: near its no-load speed a drive gives less than it is told.
   const auto [low_nm, high_nm] = std::minmax({expected_nm[0], expected_nm[1], 0.0});

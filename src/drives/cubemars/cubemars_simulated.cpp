@@ -188,8 +188,7 @@ CanFrame CubemarsDrive::mitReply() const noexcept {
   const auto& r = own_.ranges;
   std::array<std::uint8_t, 8> data{};
   // Scaled without limits (float_to_uint() of the Mini Cheetah's firmware, from which this protocol is).
-  const double rad = std::remainder(driveAngleDeg() * kRadPerDeg, 2.0 * r.position_rad);
-  const std::uint32_t position = wrappedCode(rad, r.position_rad, 16);
+  const std::uint32_t position = wrappedCode(driveAngleDeg() * kRadPerDeg, r.position_rad, 16);
   const std::uint32_t velocity = wrappedCode(driveRpm() * kRadPerSPerRpm, r.velocity_rad_s, 12);
   const std::uint32_t torque = wrappedCode(driveTorqueNm(), r.torque_nm, 12);
   data[0] = static_cast<std::uint8_t>(id_);
