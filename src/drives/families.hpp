@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "drives/recogniser.hpp"
 #include "drives/wording.hpp"
@@ -24,7 +25,11 @@ struct FamilyEntry {
   const ScanQuestions* questions = nullptr;
   /// Drive that would obey the question of another family; null: none of this family would.
   ObeyedBy obeyed_by = nullptr;
-  bool only_answers = false;  ///< Its drives send nothing but answers.
+  /// Drives that send nothing but answers: the family's name, or that of a part of it; empty: none.
+  std::string_view only_answer{};
+  /// Whether a drive with this id may have sent the frame, where the file says so and recognise() does not
+  /// know the frame's id; null: it knows all.
+  bool (*speaks)(const CanFrame& frame, int id) = nullptr;
 };
 
 /// The families of rc10d: the one place where a new one is entered.

@@ -13,7 +13,26 @@ bool accepted(const std::vector<FrameFilter>& filters, const CanFrame& frame) {
                      [&](const FrameFilter& filter) { return accepts(filter, frame); });
 }
 
+/// Such a frame may be the motor's, though its family is not known to send under this id.
+bool maySend(const KnownMotor& motor, const CanFrame& frame) {
+  const auto families = builtInFamilies();
+  const auto entry = std::find_if(families.begin(), families.end(),
+                                  [&](const FamilyEntry& each) { return each.family == motor.family; });
+  return entry != families.end() && entry->speaks != nullptr && entry->speaks(frame, motor.id);
+}
+
 }  // namespace
+
+bool DriveClaims::isStranger(const DriveGuess& guess) const {
+  return std::find(strangers_.begin(), strangers_.end(), guess) != strangers_.end();
+}
+
+void DriveClaims::takeStranger(const DriveGuess& guess) {
+  if (isStranger(guess)) return;
+  strangers_.push_back(guess);
+  for (auto& [claimed, claim] : claims_)
+    if (claimed == guess && claim.assumed) claim.collides = true;
+}
 
 // An answer to a question goes to an id of the questioner's: there its drive counts by family and id.
 void DriveClaims::take(const CanFrame& frame) {
@@ -34,9 +53,12 @@ void DriveClaims::take(const CanFrame& frame) {
   const bool exact = std::any_of(guesses.begin(), guesses.end(), [&](const auto& each) {
     return of_sender(each) && each.first.id == sender->id;
   });
+  const bool may_be = sender != motors_.end() && !own && maySend(*sender, frame);
+  if (may_be && guesses.empty()) unguessed_[static_cast<std::size_t>(sender - motors_.begin())] = true;
   for (const auto& each : guesses) {
     const auto& guess = each.first;
     const auto* family = each.second;
+    if (guess.from_drive && sender == motors_.end()) takeStranger(guess);
     if (!guess.from_drive || of(guess).has_value()) continue;
     auto found = sender;
     if (found == motors_.end() && !guess.silent.empty())
@@ -46,7 +68,8 @@ void DriveClaims::take(const CanFrame& frame) {
     if (found == motors_.end() || (own && family != sender->family)) continue;
     if (exact && guess.id != sender->id) continue;
     claims_.emplace_back(guess, Claim{.motor = static_cast<std::size_t>(found - motors_.begin()),
-                                      .collides = family != found->family});
+                                      .collides = family != found->family && (!may_be || isStranger(guess)),
+                                      .assumed = may_be});
   }
 }
 
@@ -62,7 +85,7 @@ std::vector<std::string> DriveClaims::unheard() const {
     const bool heard = std::any_of(claims_.begin(), claims_.end(), [i](const auto& claim) {
       return claim.second.motor == i && !claim.second.collides;
     });
-    if (!heard) names.push_back(motors_[i].name);
+    if (!heard && !unguessed_[i]) names.push_back(motors_[i].name);
   }
   return names;
 }

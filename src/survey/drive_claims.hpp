@@ -28,9 +28,11 @@ class DriveClaims {
   struct Claim {
     std::size_t motor = 0;
     bool collides = false;  ///< A drive of another family sends under the id of the motor's.
+    bool assumed = false;   ///< By the file alone: the guess is of another family, but fits the motor's, too.
   };
 
-  explicit DriveClaims(std::vector<KnownMotor> motors) : motors_(std::move(motors)) {}
+  explicit DriveClaims(std::vector<KnownMotor> motors)
+      : motors_(std::move(motors)), unguessed_(motors_.size()) {}
 
   void take(const CanFrame& frame);
 
@@ -44,8 +46,14 @@ class DriveClaims {
   [[nodiscard]] const std::vector<KnownMotor>& motors() const noexcept { return motors_; }
 
  private:
+  /// A drive that is heard under the id of no motor.
+  void takeStranger(const DriveGuess& guess);
+  [[nodiscard]] bool isStranger(const DriveGuess& guess) const;
+
   std::vector<KnownMotor> motors_;
   std::vector<std::pair<DriveGuess, Claim>> claims_;
+  std::vector<DriveGuess> strangers_;
+  std::vector<bool> unguessed_;  ///< Of each motor: heard under an id at which no family is known.
 };
 
 }  // namespace rc10::survey

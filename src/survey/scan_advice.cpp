@@ -39,8 +39,8 @@ ScanNames scanNames() {
     if (entry.questions != nullptr) {
       append(names.asked, entry.questions->asked);
       append(names.silent, entry.questions->silent);
-    } else if (entry.only_answers) {
-      names.not_asked.emplace_back(entry.family->name());
+    } else if (!entry.only_answer.empty()) {
+      names.not_asked.emplace_back(entry.only_answer);
     }
   }
   std::sort(names.not_asked.begin(), names.not_asked.end());

@@ -76,6 +76,44 @@ TEST(DriveClaims, ADriveOfAnotherFamilyUnderAMotorsIdCollides) {
   EXPECT_THAT(claims.unheard(), ElementsAre("wheel")) << "it was somebody else";
 }
 
+KnownMotor damiao(std::uint32_t master_id, std::uint8_t id) {
+  return {"arm",
+          family("Damiao"),
+          id,
+          {FrameFilter{.id = {master_id, false},
+                       .mask = kStandardIdMask,
+                       .discriminator = PayloadDiscriminator{0, 0x0F, id}}},
+          {}};
+}
+
+TEST(DriveClaims, ADamiaoWithTheMasterIdOfAnotherFamilyIsTheMotorOfTheFile) {
+  DriveClaims claims{{damiao(0x201, 1)}};
+  claims.take(frameOf("201#0104442010101E1E"));
+  const auto claim = claims.of({"DJI M3508 or M2006", 1});
+  ASSERT_TRUE(claim);
+  EXPECT_FALSE(claim->collides);
+  EXPECT_THAT(claims.unheard(), IsEmpty());
+}
+
+TEST(DriveClaims, ADamiaoWhoseMasterIdIsNoOtherFamilysIsHeard) {
+  DriveClaims claims{{damiao(0x7E0, 1)}};
+  claims.take(frameOf("7E0#017FFF7FF7FF1E1E"));
+  EXPECT_THAT(claims.unheard(), IsEmpty());
+}
+
+TEST(DriveClaims, ADriveThatSendsUnderTheMasterIdOfADamiaoCollides) {
+  for (const bool first : {false, true}) {
+    DriveClaims claims{{damiao(0x201, 1)}};
+    if (first) claims.take(frameOf("201#0223004520121900"));
+    claims.take(frameOf("201#0123004520121900"));
+    if (!first) claims.take(frameOf("201#0223004520121900"));
+    const auto claim = claims.of({"DJI M3508 or M2006", 1});
+    ASSERT_TRUE(claim);
+    EXPECT_TRUE(claim->collides) << first;
+    EXPECT_THAT(claims.unheard(), ElementsAre("arm")) << first;
+  }
+}
+
 TEST(DriveClaims, AQuestionThatCommandsAMotorOfTheFileIsFoundWhetherItIsHeardOrNot) {
   const DriveClaims claims{{vesc()}};
   EXPECT_EQ(claims.commandedBy(frameOf("0000012A#00000000")), "motor 'pump'");

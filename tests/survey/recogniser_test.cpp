@@ -110,6 +110,35 @@ TEST(Recogniser, KnowsMyActuator) {
   EXPECT_THAT(of("501#01E66682EB550000"), Contains(drive("MyActuator", 1)));
 }
 
+TEST(Recogniser, KnowsEachStatusOfADamiao) {
+  for (const char* text :
+       {"011#017FFF7FF7FF1E1E", "011#117FFF7FF7FF1E1E", "011#217FFF7FF7FF1E1E", "011#317FFF7FF7FF1E1E",
+        "011#417FFF7FF7FF1E1E", "011#517FFF7FF7FF1E1E", "011#817FFF7FF7FF1E1E", "011#E17FFF7FF7FF1E1E"})
+    EXPECT_THAT(of(text), Contains(drive("Damiao", 1))) << text;
+}
+
+// Answers of the protocols' documents to any question, beside those that rc10d asks.
+TEST(BusSurvey, NoAnswerToAnotherControllerHidesAMyActuator) {
+  BusSurvey survey;
+  for (const char* code :
+       {"9A", "94", "90", "9D", "60", "61", "62", "63", "64", "42", "43", "B2", "B3", "B5",
+        "B6", "30", "31", "32", "20", "70", "71", "77", "78", "80", "81", "A6", "A8", "F1"}) {
+    survey.take(frame((std::string{"241#"} + code + "320001E5010400").c_str()));
+    ASSERT_THAT(survey.sightings()[0].guesses, Contains(drive("MyActuator", 1))) << code;
+  }
+}
+
+TEST(BusSurvey, NoAnswerToAnotherControllerHidesAnLKTech) {
+  BusSurvey survey;
+  for (const char* text :
+       {"141#9A1EC01264001008", "141#8000000000000000", "141#8100000000000000", "141#8800000000000000",
+        "141#8C00000000000000", "141#9000127856341200", "141#9D1E100020003000", "141#A01E100020003000",
+        "141#A31E100020003000", "141#A51E100020003000", "141#A71E100020003000", "141#A81E100020003000"}) {
+    survey.take(frame(text));
+    ASSERT_THAT(survey.sightings()[0].guesses, Contains(drive("LK-Tech", 1))) << text;
+  }
+}
+
 TEST(Recogniser, ErrorFramesAndRemoteFramesAreNoDrives) {
   auto error = frame("203#1000F44806662D00");
   error.type = FrameType::kError;

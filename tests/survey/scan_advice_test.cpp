@@ -63,7 +63,8 @@ TEST(ScanAdvice, WhoWasNotAskedIsTold) {
       advice[0],
       "not all VESC, RobStride and CyberGear ids were asked: an ODrive with extended ids, node 136, would "
       "take the questions for commands");
-  EXPECT_THAT(advice[1], StartsWith("Damiao, LK-Tech, MyActuator and moteus drives speak only when"));
+  EXPECT_THAT(advice[1],
+              StartsWith("CubeMars (MIT), Damiao, LK-Tech, MyActuator and moteus drives speak only when"));
   EXPECT_EQ(
       advice[2],
       "Nothing was asked (--listen-only): VESC as delivered, RobStride and CyberGear may be silent too.");

@@ -8,7 +8,6 @@ namespace rc10 {
 namespace {
 
 constexpr std::string_view kCubemarsServo = "CubeMars (servo)";
-constexpr std::string_view kCubemarsMit = "CubeMars (MIT)";
 
 }  // namespace
 

@@ -12,17 +12,21 @@ namespace {
 constexpr std::string_view kDamiao = "Damiao";
 // Above this a master id would be taken for a command to another drive of one of its modes.
 constexpr std::uint32_t kDamiaoMasterMax = 0xFF;
-// Valid status codes: disabled, enabled, and from "sensor" to "overload".
-constexpr std::array<std::uint8_t, 10> kDamiaoStatuses{0x0, 0x1, 0x5, 0x8, 0x9, 0xA, 0xB, 0xC, 0xD, 0xE};
+// Manual, "LED Status": disabled, enabled, and from "calibration" to "overload".
+constexpr std::array<std::uint8_t, 13> kDamiaoStatuses{0x0, 0x1, 0x2, 0x3, 0x4, 0x5, 0x8,
+                                                       0x9, 0xA, 0xB, 0xC, 0xD, 0xE};
 
 }  // namespace
 
-void recogniseDamiao(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
-  if (frame.id.extended || frame.length != 8 || frame.id.value > kDamiaoMasterMax) return;
-  const int id = frame.data[0] & 0x0F;
+bool speaksDamiao(const CanFrame& frame, int id) {
   const auto status = static_cast<std::uint8_t>(frame.data[0] >> 4U);
-  if (id >= 1 && id <= damiao::kMaxId &&
-      std::find(kDamiaoStatuses.begin(), kDamiaoStatuses.end(), status) != kDamiaoStatuses.end())
+  return !frame.id.extended && frame.length == 8 && (frame.data[0] & 0x0F) == id &&
+         std::find(kDamiaoStatuses.begin(), kDamiaoStatuses.end(), status) != kDamiaoStatuses.end();
+}
+
+void recogniseDamiao(const CanFrame& frame, std::vector<DriveGuess>& guesses) {
+  const int id = frame.data[0] & 0x0F;
+  if (frame.id.value <= kDamiaoMasterMax && id >= 1 && speaksDamiao(frame, id))
     guesses.push_back({kDamiao, id});
 }
 
