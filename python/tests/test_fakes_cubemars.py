@@ -252,3 +252,13 @@ def test_the_command_line_knows_them(capsys: pytest.CaptureFixture[str]) -> None
     output = capsys.readouterr().out
     assert output.startswith("ready: AK80-9:5 AK60-6:6")
     assert "velocity_rpm=-" in output.splitlines()[1], "the load turned it"
+
+
+@pytest.mark.parametrize(
+    ("text", "amperes"), [("AK10-9-V3:5", 2.0), ("AK80-9-V3:5", -2.0), ("AK60-6-V3:5", -2.0)]
+)
+def test_some_tell_the_amount_of_the_current_alone(text: str, amperes: float) -> None:
+    fake = drive(text)
+    fake.decode_command(frame(0x105, "FF FF F8 30"))
+    told = [message for message in run(fake, 0.05) if message.arbitration_id == 0x2905]
+    assert int.from_bytes(told[-1].data[4:6], "big", signed=True) == round(amperes * 100)

@@ -216,6 +216,24 @@ def test_a_restart_forgets_turns_modes_and_watchdog() -> None:
     assert fake.registers[Register.TIMEOUT] == 0
 
 
+def test_registers_are_kept_over_a_restart_once_they_are_saved() -> None:
+    fake = drive("DM4310:3:19")
+    for address in (0, 2, 3, 4, 5, 6, 29):
+        (answer,) = tell(fake, 0x7FF, f"03 00 55 {address:02X} 00 00 20 41")
+        assert answer == f"013#03 00 55 {address:02X} 00 00 20 41".replace(" ", "")
+    tell(fake, 0x7FF, "03 00 55 09 D0 07 00 00")
+    tell(fake, 0x7FF, "03 00 55 08 05 00 00 00")
+    enable(fake, 3)
+    assert tell(fake, 0x7FF, "03 00 AA 01 00 00 00 00") == [], "enabled"
+    tell(fake, 0x003, "FF FF FF FF FF FF FF FD")
+    assert tell(fake, 0x7FF, "03 00 AA 01 00 00 00 00") == ["013#0300AA0100000000"]
+    fake.restart()
+    assert fake.registers[Register.TIMEOUT] == 2000
+    assert fake.registers[Register.OV] == 10.0
+    assert not fake.decode_command(frame(0x7FF, "03 00 33 1D 00 00 00 00"))
+    assert tell(fake, 0x7FF, "05 00 33 1D 00 00 00 00") == ["013#0500331D00002041"]
+
+
 @pytest.mark.parametrize(("limit", "bits"), [(12.5, 16), (30.0, 12), (10.0, 12)])
 def test_codes_come_back_within_a_step(limit: float, bits: int) -> None:
     step = 2 * limit / ((1 << bits) - 1)

@@ -67,6 +67,13 @@ def test_understands_the_published_motion_command(drive: FakeMyActuator) -> None
     assert nm == pytest.approx(10.004, abs=0.001)
 
 
+def test_a_function_is_answered_with_a_copy_and_an_id_counts_at_once(drive: FakeMyActuator) -> None:
+    assert say(drive, "141#2004000001000000") == ["241#2004000001000000"]
+    assert say(drive, "141#2005000007000000") == ["247#2005000007000000"]
+    assert say(drive, "141#8000000000000000") == []
+    assert say(drive, "147#8000000000000000") == ["247#8000000000000000"]
+
+
 def test_shutdown_leaves_no_torque(drive: FakeMyActuator) -> None:
     say(drive, "141#A200000010270000")
     drive.step(0.5)
@@ -83,6 +90,10 @@ def test_silence_stops_it_and_the_first_frame_after_that_only_comes_back(
     say(drive, "141#A200000010270000")
     drive.step(1.1)
     assert [text_of(message)[:6] for message in drive.frames()] == ["241#F1"]
+    drive.step(0.9)
+    assert not list(drive.frames())
+    drive.step(0.2)
+    assert [text_of(message)[:6] for message in drive.frames()] == ["241#F1"], "once a second"
     drive.step(0.01)
     assert drive.servo.torque_nm == 0.0
     assert say(drive, "141#A200000010270000") == ["241#A200000010270000"]

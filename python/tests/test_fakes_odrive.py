@@ -177,6 +177,24 @@ def test_an_estop_is_an_error_that_a_restart_ends() -> None:
     assert (fake.errors, fake.pos_estimate) == (0, 0.0)
 
 
+@pytest.mark.parametrize(("model", "errors"), [("ODrive_S1", 1), ("ODrive_v3", 0)])
+def test_a_restart_is_a_silence_and_then_a_drive_that_does_not_obey_yet(
+    model: str, errors: int
+) -> None:
+    fake = OdriveSpec.parse(f"{model}:3").make(initial_angle_deg=0.0, load_nm=0.0)
+    fake.decode_command(frame(0x076, "00"))
+    fake.step(0.29)
+    assert not list(fake.frames())
+    fake.step(0.02)
+    first = next(fake.frames())
+    assert bytes(first.data)[:5] == bytes([errors, 0, 0, 0, 0])
+    fake.decode_command(frame(0x067, "08 00 00 00"))
+    assert fake.axis_state == IDLE
+    fake.step(1.2)
+    fake.decode_command(frame(0x067, "08 00 00 00"))
+    assert fake.axis_state == CLOSED_LOOP
+
+
 @pytest.mark.parametrize(
     ("text", "ids"),
     [

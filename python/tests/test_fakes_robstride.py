@@ -128,7 +128,7 @@ def test_set_zero_makes_the_present_angle_zero() -> None:
         frame(0x07F, "00" * 8, is_extended_id=False),
         can.Message(arbitration_id=0x0300FD7F, is_remote_frame=True, dlc=8),
         frame(0x0300FD7F, "00" * 8, is_fd=True),
-        frame(0x1600FD7F, "01 02 03 04 05 06 07 08"),
+        frame(0x1700FD7F, "01 02 03 04 05 06 01 00"),
     ],
 )
 def test_frames_of_others_do_nothing(message: can.Message) -> None:
@@ -255,3 +255,20 @@ def test_the_command_line_knows_them(capsys: pytest.CaptureFixture[str]) -> None
     output = capsys.readouterr().out
     assert output.startswith("ready: RS00:1 CyberGear:2")
     assert "angle_deg=90.00" in output
+
+
+def test_a_new_id_counts_at_once_and_is_told() -> None:
+    drive = fake()
+    (answer,) = ask(drive, 0x0709FD7F)
+    assert answer.arbitration_id == 0x000009FE
+    assert not ask(drive, STOP)
+    assert len(ask(drive, 0x0400FD09)) == 1
+
+
+@pytest.mark.parametrize(("model", "saves"), [("RS00", True), ("CyberGear", False)])
+def test_what_is_saved_outlives_a_restart(model: str, saves: bool) -> None:
+    drive = fake(model)
+    ask(drive, 0x1200FD7F, struct.pack("<HHf", 0x7018, 0, 3.0).hex())
+    assert len(ask(drive, 0x1600FD7F, "01 02 03 04 05 06 07 08")) == int(saves)
+    drive.restart()
+    assert drive.parameter(0x7018) == (3.0 if saves else drive.model.max_a)

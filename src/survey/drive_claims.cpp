@@ -13,7 +13,7 @@ bool accepted(const std::vector<FrameFilter>& filters, const CanFrame& frame) {
                      [&](const FrameFilter& filter) { return accepts(filter, frame); });
 }
 
-/// Such a frame may be the motor's, though its family is not known to send under this id.
+/// The frame may be the motor's, though its family is not known to send under this id.
 bool maySend(const KnownMotor& motor, const CanFrame& frame) {
   const auto families = builtInFamilies();
   const auto entry = std::find_if(families.begin(), families.end(),

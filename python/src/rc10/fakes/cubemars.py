@@ -62,6 +62,7 @@ class CubeMarsModel:
         position_rad: reach of the position field of MIT frames, to both sides.
         velocity_rad_s: the same of the velocity.
         torque_nm: the same of the torque; also all that the motor can.
+        signed_current: servo feedback tells the direction of the current, not its amount alone.
     """
 
     name: str
@@ -72,6 +73,7 @@ class CubeMarsModel:
     position_rad: float
     velocity_rad_s: float
     torque_nm: float
+    signed_current: bool = True
 
     @property
     def v3(self) -> bool:
@@ -91,10 +93,13 @@ CUBEMARS_MODELS = {
         CubeMarsModel("AK60-6", 6, 14, 0.068, 560, 12.5, 45, 15),
         CubeMarsModel("AK70-10", 10, 21, 0.095, 480, 12.5, 50, 25),
         CubeMarsModel("AK80-6", 6, 21, 0.091, 800, 12.5, 76, 12),
+        CubeMarsModel("AK80-8", 8, 21, 0.159, 360, 12.5, 37.5, 32),
         CubeMarsModel("AK80-9", 9, 21, 0.091, 533, 12.5, 50, 18),
         CubeMarsModel("AK80-64", 64, 21, 0.119, 60, 12.5, 8, 144),
-        CubeMarsModel("AK10-9-V3", 9, 21, 0.16, 320, 12.56, 28, 54),
-        CubeMarsModel("AK80-8-V3", 8, 21, 0.132, 360, 12.5, 37.5, 32),
+        CubeMarsModel("AK10-9-V3", 9, 21, 1.1314 / 9, 320, 12.56, 28, 54, signed_current=False),
+        CubeMarsModel("AK60-6-V3", 6, 14, 0.119, 640, 12.56, 60, 12),
+        CubeMarsModel("AK80-8-V3", 8, 21, 1.0566 / 8, 360, 12.5, 37.5, 32),
+        CubeMarsModel("AK80-9-V3", 9, 21, 0.095, 533, 12.56, 65, 18),
     )
 }
 
@@ -395,11 +400,12 @@ class FakeCubeMars(Shaft):
 
     def feedback(self) -> can.Message:
         """Returns the feedback of the servo protocol."""
+        told_a = self.current_a if self.spec.model.signed_current else abs(self.current_a)
         data = struct.pack(
             ">hhhbB",
             _int16(self.angle_deg * 10.0),
             _int16(self.erpm / 10.0),
-            _int16(self.current_a * 100.0),
+            _int16(told_a * 100.0),
             max(-20, min(127, round(self.temperature_c))),
             self.error,
         )

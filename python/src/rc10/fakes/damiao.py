@@ -27,6 +27,7 @@ COMMUNICATION_LOST = 0xD
 
 READ = 0x33
 WRITE = 0x55
+SAVE = 0xAA
 STATE = 0xCC
 REGISTER_ID = 0x7FF
 
@@ -45,7 +46,13 @@ _MAX_WAITING = 32
 class Register(IntEnum):
     """The registers that this drive has."""
 
+    UV = 0
     KT = 1
+    OT = 2
+    OC = 3
+    ACC = 4
+    DEC = 5
+    MAX_SPD = 6
     MST_ID = 7
     ESC_ID = 8
     TIMEOUT = 9
@@ -63,6 +70,7 @@ class Register(IntEnum):
     PMAX = 21
     VMAX = 22
     TMAX = 23
+    OV = 29
     P_M = 80
     XOUT = 81
 
@@ -76,6 +84,18 @@ _WHOLE = (
     Register.SW_VER,
     Register.SN,
     Register.NPP,
+)
+
+
+# Written and kept, without effect here.
+_KEPT = (
+    Register.UV,
+    Register.OT,
+    Register.OC,
+    Register.ACC,
+    Register.DEC,
+    Register.MAX_SPD,
+    Register.OV,
 )
 
 
@@ -213,9 +233,11 @@ class FakeDamiao(Shaft):
         self.load_nm = load_nm
         self.commands = 0
         self.status = DISABLED
+        self.can_id = spec.can_id
+        self.master_id = spec.master_id
         self.target = Target()
         self.registers: dict[Register, float] = {}
-        self._saved = {
+        self._saved: dict[Register, float] = {
             Register.MST_ID: spec.master_id,
             Register.ESC_ID: spec.can_id,
             Register.TIMEOUT: timeout,
@@ -228,6 +250,7 @@ class FakeDamiao(Shaft):
             Register.SN: 1,
             **dict.fromkeys(
                 (
+                    *_KEPT,
                     Register.DAMPING,
                     Register.INERTIA,
                     Register.NPP,
@@ -257,7 +280,7 @@ class FakeDamiao(Shaft):
     @property
     def command_ids(self) -> list[int]:
         """The ids that it listens to: all that end in its own, and that of the registers."""
-        return [*(family << 8 | self.spec.can_id for family in range(8)), REGISTER_ID]
+        return [*(family << 8 | self.can_id for family in range(8)), REGISTER_ID]
 
     @property
     def command(self) -> float:
@@ -292,7 +315,7 @@ class FakeDamiao(Shaft):
         data = bytes(message.data).ljust(8, b"\0")
         if message.arbitration_id == REGISTER_ID:
             return self._register(data)
-        if message.arbitration_id & 0xFF != self.spec.can_id:
+        if message.arbitration_id & 0xFF != self.can_id:
             return False
         self.commands += 1
         self._silence_s = 0.0
@@ -351,12 +374,17 @@ class FakeDamiao(Shaft):
         )
 
     def _register(self, data: bytes) -> bool:
-        if data[0] | data[1] << 8 != self.spec.can_id:
+        if data[0] | data[1] << 8 != self.can_id:
             return False
         self.commands += 1
         operation, address = data[2], data[3]
         if operation == STATE:
             self._answer(self.feedback())
+        elif operation == SAVE:
+            # Only while disabled.
+            if self.status != ENABLED:
+                self._saved = dict(self.registers)
+                self._answer(data[:3] + bytes([1]) + bytes(4))
         elif operation in (READ, WRITE) and address in list(Register):
             register = Register(address)
             if operation == WRITE and not self._write(register, data[4:8]):
@@ -385,6 +413,11 @@ class FakeDamiao(Shaft):
                 self.target = Target(Mode(whole))
         elif register in (Register.PMAX, Register.VMAX, Register.TMAX) and 0 < number < math.inf:
             self.registers[register] = number
+        elif register in (Register.MST_ID, Register.ESC_ID):
+            # Counts from the next start on.
+            self.registers[register] = whole if register is Register.MST_ID else whole & 0xFF
+        elif register in _KEPT and math.isfinite(number):
+            self.registers[register] = number
         else:
             return False
         return True
@@ -401,7 +434,7 @@ class FakeDamiao(Shaft):
         torque = to_code(self.current_a * self.model.kt_nm_per_a, t_max, 12)
         return bytes(
             [
-                self.status << 4 | self.spec.can_id & 0x0F,
+                self.status << 4 | self.can_id & 0x0F,
                 position >> 8,
                 position & 0xFF,
                 speed >> 4,
@@ -417,7 +450,7 @@ class FakeDamiao(Shaft):
         waiting, self._waiting = self._waiting, []
         for data in waiting:
             yield can.Message(
-                arbitration_id=self.spec.master_id,
+                arbitration_id=self.master_id,
                 is_extended_id=False,
                 is_fd=self.fd,
                 bitrate_switch=self.fd,
@@ -431,6 +464,8 @@ class FakeDamiao(Shaft):
     def restart(self) -> None:
         """As if its power had been away for a moment."""
         self.registers.update(self._saved)
+        self.can_id = int(self.registers[Register.ESC_ID])
+        self.master_id = int(self.registers[Register.MST_ID])
         self._disarm(DISABLED)
         self.angle_rad = math.remainder(self.angle_rad, math.tau)
 

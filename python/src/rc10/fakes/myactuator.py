@@ -21,6 +21,8 @@ _ANGLE, _STATUS, _READING = 0x92, 0x9A, 0x9C
 _CURRENT, _SPEED, _POSITION = 0xA1, 0xA2, 0xA4
 _RUN_TIME, _SILENCE_LIMIT, _SILENCE_NOTICE = 0xB1, 0xB3, 0xF1
 _READ_ACCELERATION, _SET_ACCELERATION = 0x42, 0x43
+_FUNCTION, _SET_ID = 0x20, 5
+_NOTICE_EVERY_S = 1.0
 
 _NEEDS_RESTART = 0x0002 | 0x0010 | 0x0080
 _SUPPLY_V = 48.0
@@ -114,6 +116,7 @@ class FakeMyActuator(AnsweringDrive):
         self.brake_released = False
         self._silence_s = 0.0
         self._stopped_by_silence = False
+        self._since_notice_s = 0.0
         self._run_time_s = 0.0
         # Accelerations of position (up, down) and velocity (up, down), deg/s².
         self._accelerations = [1000] * 4
@@ -177,11 +180,20 @@ class FakeMyActuator(AnsweringDrive):
                 self.servo.follow_speed(0.0)
             elif code in (_RELEASE_BRAKE, _LOCK_BRAKE):
                 self.brake_released = code == _RELEASE_BRAKE
+            elif code == _FUNCTION:
+                self._set_function(data)
+                return
             elif code == _SILENCE_LIMIT:
                 self.silence_limit_s = _UINT32.unpack(data)[0] * 1e-3
             else:
                 return
             self._answer(data)
+
+    def _set_function(self, data: bytes) -> None:
+        # Stored at once; the answer is a copy, of the drive that it is now.
+        if data[1] == _SET_ID:
+            self.motor_id = _UINT32.unpack(data)[0] & 0x3F
+        self._answer(data)
 
     def _answer_acceleration(self, data: bytes) -> None:
         index = data[1]
@@ -269,4 +281,9 @@ class FakeMyActuator(AnsweringDrive):
         if limit_s and self._silence_s > limit_s and not self._stopped_by_silence:
             self._stopped_by_silence = True
             self.servo.release()
-            self._answer(bytes([_SILENCE_NOTICE]) + bytes(7))
+            self._since_notice_s = _NOTICE_EVERY_S
+        if self._stopped_by_silence:
+            self._since_notice_s += dt_s
+            if self._since_notice_s >= _NOTICE_EVERY_S:
+                self._since_notice_s = 0.0
+                self._answer(bytes([_SILENCE_NOTICE]) + bytes(7))

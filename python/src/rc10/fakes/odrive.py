@@ -22,6 +22,9 @@ SUPPLY_V = 24.0
 
 _MAX_STEP_S = 0.001
 _HEARTBEAT_S = 0.1
+# After power-up: no frame, then heartbeats of a drive that does not obey yet.
+_SILENT_S, _BOOT_S = 0.3, 1.5
+UNDEFINED, INITIALIZING = 0, 1
 _TWO_FLOATS = struct.Struct("<ff")
 _POSITION = struct.Struct("<fhh")
 _TWO_INTS = struct.Struct("<ii")
@@ -212,6 +215,7 @@ class FakeOdrive:
         self._unfed_s = 0.0
         self._since_heartbeat_s = _HEARTBEAT_S
         self._asked: list[int] = []
+        self._started_s = math.inf
         self._integral_nm = 0.0
         # A rotor of about half a kilogram, alone.
         self._inertia_kg_m2 = 2e-4
@@ -269,6 +273,8 @@ class FakeOdrive:
             or message.arbitration_id >> 5 != self.spec.node
         ):
             return False
+        if self.starting:
+            return False
         self._unfed_s = 0.0
         if message.is_remote_frame:
             cmd = message.arbitration_id & 0x1F
@@ -324,13 +330,21 @@ class FakeOdrive:
         self.input_pos = self.input_vel = self.input_torque = 0.0
         self.vel_limit, self.current_limit_a = 2.0, 10.0
         self._zero_turns = self.turns
-        self._unfed_s = 0.0
+        self._unfed_s = self._started_s = 0.0
+        self._since_heartbeat_s = _HEARTBEAT_S
+        self._asked = []
+
+    @property
+    def starting(self) -> bool:
+        """It was restarted, and takes no command yet."""
+        return self._started_s < _BOOT_S
 
     def step(self, dt_s: float) -> None:
         """Lets `dt_s` seconds pass."""
         parts_s = pieces(dt_s, _MAX_STEP_S)
         self._since_heartbeat_s += dt_s
-        self._unfed_s += dt_s
+        self._started_s += dt_s
+        self._unfed_s = 0.0 if self.starting else self._unfed_s + dt_s
         if self._watchdog_s is not None and self._unfed_s > self._watchdog_s:
             self.disarm(self.generation.watchdog)
         for part_s in parts_s:
@@ -375,7 +389,10 @@ class FakeOdrive:
         flags = (0, 0, 0)
         if self.generation is V3:
             flags = (int(self.motor_failed), int(self.encoder_failed), int(self.controller_failed))
-        return self._message(Cmd.HEARTBEAT, _HEARTBEAT.pack(self.errors, self.axis_state, *flags))
+        errors, state = self.errors, self.axis_state
+        if self.starting:
+            errors, state = errors | (0 if self.generation is V3 else INITIALIZING), UNDEFINED
+        return self._message(Cmd.HEARTBEAT, _HEARTBEAT.pack(errors, state, *flags))
 
     def estimates(self) -> can.Message:
         """Returns position and speed."""
@@ -383,6 +400,8 @@ class FakeOdrive:
 
     def frames(self) -> Iterator[can.Message]:
         """Yields what was asked for, position and speed, every 100 ms heartbeat and telemetry."""
+        if self._started_s < _SILENT_S:
+            return
         asked, self._asked = self._asked, []
         for cmd in asked:
             yield from self._told(cmd)

@@ -18,13 +18,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 # Types of frames: bits 28 to 24 of the id.
-_GET_ID, _OPERATE, _FEEDBACK, _ENABLE, _STOP, _SET_ZERO = 0, 1, 2, 3, 4, 6
-_READ, _WRITE, _FAULT, _REPORT = 17, 18, 21, 24
+_GET_ID, _OPERATE, _FEEDBACK, _ENABLE, _STOP, _SET_ZERO, _SET_ID = 0, 1, 2, 3, 4, 6, 7
+_READ, _WRITE, _FAULT, _SAVE, _REPORT = 17, 18, 21, 22, 24
 
 _RUN_MODE, _IQ_REF, _SPD_REF, _LIMIT_TORQUE = 0x7005, 0x7006, 0x700A, 0x700B
 _LOC_REF, _LIMIT_SPD, _LIMIT_CUR = 0x7016, 0x7017, 0x7018
 _MECH_POS, _IQF, _MECH_VEL, _VBUS = 0x7019, 0x701A, 0x701B, 0x701C
 _LOC_KP, _SPD_KP, _SPD_KI = 0x701E, 0x701F, 0x7020
+
+_TAKEN = (_GET_ID, _OPERATE, _ENABLE, _STOP, _SET_ZERO, _SET_ID, _READ, _WRITE, _SAVE)
 
 _OPERATION, _PROFILE, _VELOCITY, _CURRENT, _CYCLIC = 0, 1, 2, 3, 5
 
@@ -169,6 +171,7 @@ class FakeRobStride:
         self._kept_nm = 0.0
         self._operation = (0.0, 0.0, 0.0, 0.0, 0.0)
         self._parameters: dict[int, int] = {}
+        self._saved: dict[int, int] = {}
         self._power_up()
         self.position_rad = math.radians(initial_angle_deg)
 
@@ -227,13 +230,15 @@ class FakeRobStride:
             return False
         kind = message.arbitration_id >> 24
         data = bytes(message.data)
-        if kind not in (_GET_ID, _OPERATE, _ENABLE, _STOP, _SET_ZERO, _READ, _WRITE):
+        if kind not in _TAKEN or (kind == _SAVE and self.model.name == "CyberGear"):
             return False
         self.commands += 1
         self._silence_s = 0.0
         if kind != _OPERATE:
             self.host_id = message.arbitration_id >> 8 & 0xFF
-        if kind == _GET_ID:
+        if kind == _SET_ID:
+            self.motor_id = message.arbitration_id >> 16 & 0x7F
+        if kind in (_GET_ID, _SET_ID):
             self._answer(_GET_ID, self.motor_id, 0xFE, bytes(8))
         elif kind == _READ:
             self._answer_parameter(int.from_bytes(data[:2], "little"))
@@ -255,6 +260,9 @@ class FakeRobStride:
         elif kind == _SET_ZERO:
             if data[0] == 1:
                 self.position_rad = 0.0
+        elif kind == _SAVE:
+            kept = set(self._parameters) - {_RUN_MODE, _IQ_REF, _SPD_REF, _LOC_REF}
+            self._saved = {index: self._parameters[index] for index in kept}
         elif kind == _WRITE:
             index, bits = _PARAMETER.unpack(data)
             self._write(index, bits)
@@ -388,6 +396,7 @@ class FakeRobStride:
             (_SPD_KI, 0.002),
         ):
             self._set(index, value)
+        self._parameters.update(self._saved)
 
     # ---- physics ---------------------------------------------------------------------------------
 
