@@ -1,5 +1,8 @@
 #pragma once
 
+#include <linux/can.h>
+#include <sys/socket.h>
+
 #include <array>
 #include <bitset>
 #include <memory>
@@ -9,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/can_receiver.hpp"
+#include "bus/wire_frame.hpp"
 #include "config/robot_config.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/tick/scheduler.hpp"
@@ -84,6 +88,19 @@ class VirtualRobot {
 
   /// Frames are stamped so much later than they were sent, up to half a period.
   void stampLate(Duration by) { stamp_delay_ = by; }
+
+  /// Frames of the daemon on the first bus since the last tick, before its drives see them.
+  std::vector<CanFrame> takeFrames() {
+    std::vector<CanFrame> frames;
+    canfd_frame wire;
+    for (;;) {
+      const auto size = ::recv(robot_->simPorts()[0]->descriptor(), &wire, sizeof wire, MSG_DONTWAIT);
+      if (size <= 0) return frames;
+      CanFrame frame;
+      EXPECT_TRUE(decodeFrame(wire, static_cast<std::size_t>(size), frame));
+      frames.push_back(frame);
+    }
+  }
 
   void freezeSimulation(bool frozen) { frozen ? frozen_.set() : frozen_.reset(); }
   void freezeBus(std::size_t bus, bool frozen) { frozen_.set(bus, frozen); }

@@ -144,7 +144,7 @@ class MoteusFamily final : public MotorFamily {
     use.steers = use.obeys;
     for (auto& filter : use.steers) filter.discriminator = PayloadDiscriminator{0, 0xF0, 0x00};
     // A vendor's tool writes "d pos", "d stop" to the drive's console: a stream of bytes (0x40, channel,
-    // length) in which other commands have other first letters. Source: docs/protocol/can.md, diagnostic.md.
+    // length) in which other commands have other first letters. Source: docs/protocol/can.md.
     for (auto filter : use.obeys) {
       filter.discriminator = PayloadDiscriminator{.byte_index = 0, .value = 0x40};
       filter.also = PayloadDiscriminator{.byte_index = 3, .value = 'd'};

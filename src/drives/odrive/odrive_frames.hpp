@@ -27,7 +27,7 @@ enum class Message : std::uint8_t {
   kReboot = 0x16,
   kBusVoltage = 0x17,
   kClearErrors = 0x18,
-  kSetPosition = 0x19,  ///< What the position is called from now on.
+  kSetPosition = 0x19,  ///< Renames the present position, and a position loop goes there.
   kTorques = 0x1C,      ///< Firmware 0.6; 0.5 answers here with the voltage of a pin.
   kEnterDfu = 0x1F,     ///< Firmware 0.6.
 };

@@ -2,8 +2,6 @@
 // somebody else who commands our drives, and who only asks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <linux/can.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +9,6 @@
 #include <tuple>
 #include <vector>
 
-#include "bus/wire_frame.hpp"
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
 #include "daemon/exchange/events.hpp"
@@ -71,19 +68,6 @@ RobotConfig configOf(const std::string& text) {
   return outcome.config.value_or(twoWheelsAndYaw());
 }
 
-/// Frames of the daemon since the last tick, before its drives see them.
-std::vector<CanFrame> takeFrames(VirtualRobot& robot) {
-  std::vector<CanFrame> frames;
-  canfd_frame wire;
-  for (;;) {
-    const auto size = ::recv(robot.robot().simPorts()[0]->descriptor(), &wire, sizeof wire, MSG_DONTWAIT);
-    if (size <= 0) return frames;
-    CanFrame frame;
-    EXPECT_TRUE(decodeFrame(wire, static_cast<std::size_t>(size), frame));
-    frames.push_back(frame);
-  }
-}
-
 class RestTest : public ::testing::TestWithParam<Subject> {
  protected:
   static constexpr std::size_t kMotor = 0;
@@ -109,7 +93,7 @@ class RestTest : public ::testing::TestWithParam<Subject> {
     for (int i = 0; i < ticks; ++i) {
       robot.command(kMotor, turning());
       robot.tick();
-      const auto frames = takeFrames(robot);
+      const auto frames = robot.takeFrames();
       carry(frames);
       all.insert(all.end(), frames.begin(), frames.end());
     }
@@ -119,7 +103,7 @@ class RestTest : public ::testing::TestWithParam<Subject> {
   void goOn(const std::vector<CanFrame>& commands, int ticks) {
     for (int i = 0; i < ticks && fault() != FaultCode::kNotAtRest; ++i) {
       robot.tick();
-      (void)takeFrames(robot);
+      (void)robot.takeFrames();
       carry(commands);
       ++went_on_ticks;
     }
@@ -206,12 +190,12 @@ TEST_P(RestTest, ARestFrameThatIsLostIsRepeatedInTheNextTick) {
       order.motors.set(kMotor);
       ASSERT_TRUE(robot.exchange().orders.push(order));
       robot.tick();
-      ASSERT_FALSE(takeFrames(robot).empty());
+      ASSERT_FALSE(robot.takeFrames().empty());
       robot.tick();
-      carry(takeFrames(robot));
+      carry(robot.takeFrames());
       for (int i = 0; i < 10; ++i) {  // less than the time-out of any drive
         robot.tick();
-        (void)takeFrames(robot);
+        (void)robot.takeFrames();
       }
       EXPECT_LT(std::fabs(physics.currentA()), 0.05 * pushed_a) << more_ticks;
       robot.simBus().stall(0, false);
@@ -250,12 +234,12 @@ TEST_P(RestTest, SomebodyElsesCommandsAreAFaultAndRestGoesOnBeingSent) {
   }
   EXPECT_EQ(fault(), FaultCode::kForeignCommands);
   robot.run(2);
-  (void)takeFrames(robot);
+  (void)robot.takeFrames();
   bool rest_sent = false;
   for (int i = 0; i < 60; ++i) {
     foreign(commands[0]);
     robot.tick();
-    for (const auto& frame : takeFrames(robot)) rest_sent |= robot.robot().buses()[0].bus->isRest(frame);
+    for (const auto& frame : robot.takeFrames()) rest_sent |= robot.robot().buses()[0].bus->isRest(frame);
   }
   EXPECT_EQ(fault(), FaultCode::kForeignCommands);
   EXPECT_TRUE(rest_sent || robot.robot().motors()[kMotor].motor->driveFrames().poll == Provision::kFrame);
@@ -345,7 +329,8 @@ class RestOfARobotTest : public ::testing::Test {
     for (int i = 0; i < ticks; ++i) {
       robot->command(kFar, {.mode = ControlMode::kVelocity, .value = 60.0});
       robot->tick();
-      for (const auto& sent : takeFrames(*robot)) robot->simBus().receive(sent.id == frame.id ? frame : sent);
+      for (const auto& sent : robot->takeFrames())
+        robot->simBus().receive(sent.id == frame.id ? frame : sent);
     }
   }
 
@@ -463,7 +448,7 @@ TEST_F(RestOfARobotTest, FramesOfOursThatTheWireDoublesAreNobodyElses) {
     robot->command(kLeft, {.mode = ControlMode::kVelocity, .value = 60.0});
     robot->command(kFar, {.mode = ControlMode::kVelocity, .value = 60.0});
     robot->tick();
-    for (CanFrame frame : takeFrames(*robot)) {
+    for (CanFrame frame : robot->takeFrames()) {
       frame.received = robot->now();
       ASSERT_TRUE(robot->inboxes()[0].frames.push(frame));
     }

@@ -2,12 +2,10 @@
 // somebody else writes to its drive, of which the drive's answer tells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 
 #include <string>
 #include <vector>
 
-#include "bus/wire_frame.hpp"
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "link/words.hpp"
@@ -195,18 +193,6 @@ class ForeignSettingTest : public ForeignFramesTest {
   DriveComplaint complaint() { return robot->robot().motors()[kMotor].motor->complaint(); }
   /// To the drive, not to rc10d.
   void toDrive(const std::string& text) { robot->simBus().receive(frameOf(text)); }
-  /// Frames of the daemon since the last tick.
-  std::vector<CanFrame> takeFrames() {
-    std::vector<CanFrame> frames;
-    canfd_frame wire;
-    for (;;) {
-      const auto size = ::recv(robot->robot().simPorts()[0]->descriptor(), &wire, sizeof wire, MSG_DONTWAIT);
-      if (size <= 0) return frames;
-      CanFrame frame;
-      EXPECT_TRUE(decodeFrame(wire, static_cast<std::size_t>(size), frame));
-      frames.push_back(frame);
-    }
-  }
 };
 
 const Subject kDamiao{"Damiao", "model: DM4310, id: 1, master_id: 17", {}, {}};
@@ -219,13 +205,13 @@ TEST_F(ForeignSettingTest, AScaleModeOrWatchdogOfADamiaoThatIsWrittenWhileItObey
         std::pair{"7FF#0100550A03000000", 0x10AU}}) {
     ASSERT_NO_FATAL_FAILURE(start(kDamiao));
     toDrive(write);
-    (void)takeFrames();
+    (void)robot->takeFrames();
     robot->command(kMotor, kTurning);
     robot->tick();
     EXPECT_EQ(complaint().native_code, code) << write;
     EXPECT_EQ(complaint().fault, FaultCode::kDriveSetting);
     for (int i = 0; i < 20; ++i) {
-      for (const auto& frame : takeFrames()) {
+      for (const auto& frame : robot->takeFrames()) {
         EXPECT_TRUE(robot->robot().buses()[0].bus->isRest(frame)) << write;
         robot->simBus().receive(frame);
       }
