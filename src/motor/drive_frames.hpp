@@ -58,7 +58,8 @@ struct DriveFrames {
   Provision hold = Provision::kUnsupported;
   Provision enable = Provision::kNothing;
   Provision disable = Provision::kNothing;
-  bool idle_rests = true;  ///< While it is enabled without a target it has no torque.
+  bool idle_rests = true;      ///< While it is enabled without a target it has no torque.
+  bool brake_resists = false;  ///< Its brake can only oppose motion: no loop of a speed or a place.
 
   [[nodiscard]] constexpr Provision of(FrameKind kind) const noexcept {
     switch (kind) {
@@ -75,6 +76,11 @@ struct DriveFrames {
     return Provision::kUnsupported;
   }
 };
+
+/// An action of this kind can only oppose motion, never cause it.
+[[nodiscard]] constexpr bool resists(FrameKind kind, const DriveFrames& frames) noexcept {
+  return kind == FrameKind::kDamp || (kind == FrameKind::kBrake && frames.brake_resists);
+}
 
 /// Progress of the enable or disable sequence.
 enum class SequenceProgress : std::uint8_t { kDone, kPending, kFailed };

@@ -238,7 +238,15 @@ void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
 void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   auto& motor = motors_[index];
   const auto& reduced = motor.config->reduced;
-  if (seen.status != MotorStatus::kActive) motor.active_since = now_;
+  const auto& frames = motor.config->traits().frames;
+  const bool fast = std::fabs(seen.feedback.velocity_rpm) > reduced.velocity_rpm + reduced.tolerance_rpm;
+  // What only resists is not taken away, and takes the place of a fallback that is dragged along.
+  const bool resisted =
+      seen.acting == Acting::kDamp || (seen.acting == Acting::kBrake && frames.brake_resists);
+  const bool led = seen.target.mode == ControlMode::kCoast && motor.actions != only(FallbackAction::kCoast);
+  if (reduced.velocity_rpm > 0.0F && mode_open_ && fast && led && resisted)
+    motor.actions |= only(seen.acting == Acting::kDamp ? FallbackAction::kDamp : FallbackAction::kBrake);
+  if (seen.status != MotorStatus::kActive || resisted) motor.active_since = now_;
   const MonotonicTime since = std::max(mode_open_since_, motor.active_since);
   // The tick after a pause may see it closed where this one does not yet.
   const bool may_lift = now_ - mode_last_open_ >= std::chrono::milliseconds{490};
@@ -248,7 +256,6 @@ void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   }
   const auto most_rpm = static_cast<double>(reduced.velocity_rpm);
   if (most_rpm > 0.0 && motor.new_sample) {
-    const bool fast = std::fabs(seen.feedback.velocity_rpm) > reduced.velocity_rpm + reduced.tolerance_rpm;
     motor.fast_samples = fast ? motor.fast_samples + 1 : 0;
     require(index, motor.fast_samples <= kFastSamples + 2, "it goes on, faster than reduced mode allows");
   }

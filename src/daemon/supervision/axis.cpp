@@ -208,9 +208,15 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
 }
 
 bool Axis::tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
-  const bool too_fast = reduced_.step(reduced, moves, motor_.feedback(), tick);
+  // It is not taken away for a speed: a load would fall. A target after it has the whole time to slow down.
+  const bool resisted = fallback_.acts() && resists(fallback_.kind(), motor_.driveFrames());
+  const bool too_fast = reduced_.step(reduced, moves && !resisted, motor_.feedback(), tick);
   shaper_.setCeiling(reduced_.ceilingRpm());
-  return too_fast;
+  if (!too_fast || !fallback_.acts()) return too_fast;
+  const FrameKind resistance = resistanceOf(motor_.driveFrames());
+  if (resistance == FrameKind::kRest) return true;
+  fallback_.giveWay(resistance);
+  return false;
 }
 
 RestCheck::Verdict Axis::checkRest(const Tick& tick) noexcept {

@@ -129,7 +129,8 @@ class Axis {
   /// Unheard in this tick. Not inlined: listen() is short without it.
   [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
-  /// Speed and effort of reduced mode for this tick. True: it is faster than it may be. Few motors have it.
+  /// Speed and effort of reduced mode for this tick. True: it is faster than it may be, and no resistance can
+  /// take the place of what acts. Few motors have it.
   [[nodiscard, gnu::noinline]] bool tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;
   /// For the loops of rc10d; `stops`: the motor is braked, or led to rest along a ramp.
   [[gnu::noinline]] void boundSpeeds(bool stops, MonotonicTime now) noexcept;

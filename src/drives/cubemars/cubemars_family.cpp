@@ -108,14 +108,16 @@ constexpr DriveFrames kServoFrames{.rest = Provision::kFrame,
                                    .idle = Provision::kFrame,
                                    .damp = Provision::kFrame,
                                    .brake = Provision::kFrame,
-                                   .hold = Provision::kFrame};
+                                   .hold = Provision::kFrame,
+                                   .brake_resists = true};
 constexpr DriveFrames kMitFrames{.rest = Provision::kFrame,
                                  .poll = Provision::kFrame,
                                  .idle = Provision::kFrame,
                                  .damp = Provision::kFrame,
                                  .brake = Provision::kFrame,
                                  .hold = Provision::kFrame,
-                                 .enable = Provision::kFrame};
+                                 .enable = Provision::kFrame,
+                                 .brake_resists = true};
 constexpr DriveFrames kMitV3Frames = kServoFrames;
 
 constexpr ModeSet kServoModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,

@@ -83,8 +83,10 @@ constexpr DriveFrames driveFrames(DamiaoControl control) {
                      .idle = Provision::kFrame,
                      .brake = Provision::kFrame,
                      .enable = Provision::kFrame};
-  if (control == DamiaoControl::kMit) frames.damp = Provision::kFrame;
-  frames.idle_rests = control == DamiaoControl::kMit;  // the other modes hold a standstill
+  const bool mit = control == DamiaoControl::kMit;
+  if (mit) frames.damp = Provision::kFrame;
+  frames.brake_resists = mit;  // a spring law without stiffness
+  frames.idle_rests = mit;     // the other modes hold a standstill
   // At a speed of 0 a drive in velocity mode may be pulled away for good.
   if (control != DamiaoControl::kVelocity) frames.hold = Provision::kFrame;
   return frames;

@@ -73,7 +73,8 @@ constexpr DriveFrames kMoteusFrames{.rest = Provision::kFrame,
                                     .brake = Provision::kFrame,
                                     .hold = Provision::kFrame,
                                     .enable = Provision::kFrame,
-                                    .disable = Provision::kNothing};
+                                    .disable = Provision::kNothing,
+                                    .brake_resists = true};
 
 [[nodiscard]] int commandHz(const MotorSettings& settings) noexcept {
   return std::max(1, settings.tick_hz / std::max(1, settings.command_divider));

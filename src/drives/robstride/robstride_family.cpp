@@ -98,7 +98,8 @@ DriveFrames framesOf(RobstrideControl control) {
           .brake = if_any(control != RobstrideControl::kCurrent),
           .hold = if_any(operation || position),
           .enable = Provision::kFrame,
-          .disable = Provision::kNothing};
+          .disable = Provision::kNothing,
+          .brake_resists = operation};
 }
 
 class RobstrideFamily final : public MotorFamily {

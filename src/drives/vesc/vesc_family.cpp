@@ -276,7 +276,8 @@ MotorTraits vescTraits(const VescSettings& own) {
                    .brake = own.brake_current_a > 0.0F ? Provision::kFrame : Provision::kUnsupported,
                    .hold = holdOf(own),
                    .enable = own.ask_status ? Provision::kFrame : Provision::kNothing,
-                   .disable = Provision::kNothing};
+                   .disable = Provision::kNothing,
+                   .brake_resists = true};
   traits.host_loops = own.angle == VescAngle::kTachometer ? &kAngleLoop : nullptr;
   traits.own_velocity_loop = true;
   return traits;

@@ -45,6 +45,13 @@ struct FallbackBound {
   bool estop = false;                 ///< It replaces what held a load, perhaps.
 };
 
+/// Kind of frame in place of a hold, a brake or a ramp that a load drags along; kRest: the drive has none
+/// that only resists.
+[[nodiscard]] constexpr FrameKind resistanceOf(const DriveFrames& frames) noexcept {
+  if (frames.damp != Provision::kUnsupported) return FrameKind::kDamp;
+  return resists(FrameKind::kBrake, frames) ? FrameKind::kBrake : FrameKind::kRest;
+}
+
 /// `estop`: of the robot. In one, motors have no torque of their own in the end (IEC 60204-1); a group that
 /// stops keeps its brakes, or a robot would roll down its slope.
 [[nodiscard]] constexpr FallbackBound boundOf(FallbackAction action, bool estop, const FallbackConfig& config,
@@ -80,10 +87,13 @@ class Fallback {
     bound_ = now + bound.most.value_or(Duration{});
     then_ = bound.then;
     estop_ = bound.estop;
+    ends_ = kind_ == FrameKind::kCommand ? now + ramp.over + kRampRest : MonotonicTime::max();
     moved_ = now;
     still_deg_ = std::numeric_limits<double>::quiet_NaN();
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
+  /// This kind acts in its place from now on, and ends as it would have.
+  void giveWay(FrameKind kind) noexcept { kind_ = then_ = kind; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
   /// It damps, brakes or holds, and has for at least `time`; a ramp does not count.
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
@@ -106,7 +116,7 @@ class Fallback {
 
   /// Once per tick while it acts. `angle_deg`: of all turns.
   void step(bool stands_still, double angle_deg, MonotonicTime now) noexcept {
-    if (kind_ == FrameKind::kCommand && now - begun_ >= ramp_.over + kRampRest) end();
+    if (acts() && now >= ends_) end();
     const bool becomes = acts() && bounded_ && now >= bound_ && kind_ != then_;
     if (becomes) kind_ = then_;
     if (std::isnan(still_deg_)) still_deg_ = angle_deg;
@@ -142,5 +152,6 @@ class Fallback {
   MonotonicTime moved_{};
   double still_deg_ = 0.0;  ///< Angle at moved_; NaN: not seen yet.
 };
+  MonotonicTime ends_ = MonotonicTime::max();  ///< Of a ramp.
 
 }  // namespace rc10

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <ostream>
 #include <string>
+#include <string_view>
 
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
@@ -14,11 +17,12 @@ constexpr std::size_t kWheel = 0;
 constexpr Target kForwards{.mode = ControlMode::kVelocity, .value = 60.0};
 
 /// A wheel on a slope, which runs down for two seconds at most.
-RobotConfig onASlope(const std::string& keys) {
+RobotConfig onASlope(const std::string& keys, const std::string& top = "",
+                     const std::string& motor = "model: M3508, id: 1", const std::string& load_nm = "1.5") {
   auto outcome = parseRobotConfig(
-      "robot: slope\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
-      "      - {name: wheel, model: M3508, id: 1, run_down_s: 2, " +
-          keys + ", simulated: {load_torque_nm: 1.5}}\n",
+      "robot: slope\nrealtime: preferred\n" + top +
+          "buses:\n  - name: bench\n    type: sim\n    motors:\n      - {name: wheel, " + motor +
+          ", run_down_s: 2, " + keys + ", simulated: {load_torque_nm: " + load_nm + "}}\n",
       "slope.yaml");
   EXPECT_TRUE(outcome.config) << outcome.errorText();
   return outcome.config.value_or(twoWheelsAndYaw());
@@ -63,6 +67,109 @@ TEST(ClearOnASlope, IsRefusedAsLongAsNothingResists) {
     EXPECT_EQ(robot.order(Operation::kClear).motors[kWheel], Refusal::kMoving);
   }
 }
+
+constexpr const char* kModeInput = "mode_gpio: {chip: gpiochip0, line: 1}\n";
+
+/// With the contact of the mode input open.
+void runReduced(VirtualRobot& robot, int ticks, std::optional<Target> held = {}) {
+  for (int i = 0; i < ticks; ++i) {
+    robot.exchange().mode_contact.show(ContactState::kOpen);
+    if (held) robot.command(kWheel, *held);
+    robot.tick();
+  }
+  ASSERT_NE(robot.snapshot().conditions & kConditionReduced, 0U);
+}
+
+TEST(ClearOnASlope, InReducedModeWhatResistsIsNotTakenAwayForASpeed) {
+  VirtualRobot robot(
+      onASlope("on_estop: damp, reduced_velocity_rpm: 10", kModeInput, "model: M3508, id: 1", "0.6"));
+  runReduced(robot, 10);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[kWheel], Refusal::kNone);
+  runReduced(robot, 500, Target{.mode = ControlMode::kVelocity, .value = 8.0});
+  robot.exchange().estop.store(true);
+  runReduced(robot, 1900);
+  EXPECT_LT(robot.motor(kWheel).feedback.velocity_rpm, -25.0F) << "faster than reduced mode allows";
+  for (int i = 0; i < 1000; ++i) {
+    runReduced(robot, 1);
+    ASSERT_EQ(robot.motor(kWheel).status, MotorStatus::kReady) << i;
+    ASSERT_EQ(robot.motor(kWheel).acting, Acting::kDamp) << i;
+  }
+  const float rolls_rpm = robot.motor(kWheel).feedback.velocity_rpm;
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kWheel], Refusal::kNone);
+  EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
+  runReduced(robot, 500);
+  EXPECT_EQ(robot.motor(kWheel).acting, Acting::kDamp);
+  EXPECT_NEAR(robot.motor(kWheel).feedback.velocity_rpm, rolls_rpm, 5.0F);
+  // Its driver has the whole time for the way down.
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[kWheel], Refusal::kNone);
+  runReduced(robot, 1500, Target{.mode = ControlMode::kVelocity});
+  EXPECT_EQ(robot.motor(kWheel).status, MotorStatus::kActive);
+  EXPECT_NEAR(robot.motor(kWheel).feedback.velocity_rpm, 0.0F, 3.0F);
+}
+
+/// Fallbacks of a motor that a hand drags along, and what is left of them once it is too fast for reduced
+/// mode.
+struct Dragged {
+  const char* motor;
+  const char* keys;
+  Acting left;  ///< kNothing: a fault.
+};
+
+void PrintTo(const Dragged& dragged, std::ostream* out) { *out << dragged.motor << ", " << dragged.keys; }
+
+class DraggedInReducedMode : public ::testing::TestWithParam<Dragged> {
+ protected:
+  static void enable(VirtualRobot& robot) {
+    for (int i = 0; i < 3000 && robot.motor(kWheel).status != MotorStatus::kReady; ++i) robot.run(1);
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      (void)robot.order(Operation::kEnable);
+      robot.run(20);
+      if (robot.motor(kWheel).status == MotorStatus::kActive) return;
+    }
+    FAIL() << "not enabled";
+  }
+};
+
+TEST_P(DraggedInReducedMode, NoPushGoesOnAndNoResistanceEnds) {
+  const auto& dragged = GetParam();
+  for (const bool estop : {false, true}) {
+    VirtualRobot robot(onASlope(
+        std::string{"reduced_velocity_rpm: 10, reduced_within_ms: 500, "
+                    "zero: power_on, runaway_rpm: 100, hold_max_s: 60, brake_max_s: 60, ramp_s: 3, "} +
+            (estop ? "on_estop: " : "on_timeout: ") + dragged.keys,
+        kModeInput, dragged.motor, "0"));
+    enable(robot);
+    runReduced(robot, 5, Target{.mode = ControlMode::kBrake});
+    if (estop) robot.exchange().estop.store(true);
+    robot.simBus().drive(kWheel).physics().take({.by_deg = -1500.0, .speed_rpm = 35.0, .torque_nm = 500.0});
+    runReduced(robot, 2500);
+    const auto& wheel = robot.motor(kWheel);
+    EXPECT_NEAR(wheel.feedback.velocity_rpm, -35.0F, 2.0F);
+    EXPECT_EQ(wheel.acting, dragged.left) << estop;
+    EXPECT_EQ(wheel.fault, dragged.left == Acting::kNothing ? FaultCode::kReducedSpeed : FaultCode::kNone);
+    EXPECT_EQ(wheel.status, dragged.left == Acting::kNothing ? MotorStatus::kFault
+                            : estop                          ? MotorStatus::kReady
+                                                             : MotorStatus::kActive);
+    runReduced(robot, 1500);
+    const bool is_ramp = std::string_view{dragged.keys}.find("ramp") == 0;
+    EXPECT_EQ(robot.motor(kWheel).acting, is_ramp ? Acting::kNothing : dragged.left)
+        << "a ramp ends when it would have";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Families, DraggedInReducedMode,
+    ::testing::Values(
+        Dragged{"model: M3508, id: 1", "hold, current_limit_a: 1", Acting::kDamp},
+        Dragged{"model: M3508, id: 1", "brake, current_limit_a: 1", Acting::kDamp},
+        Dragged{"model: M3508, id: 1", "ramp, current_limit_a: 1", Acting::kDamp},
+        Dragged{"model: M3508, id: 1", "damp", Acting::kDamp},
+        Dragged{"model: DM4310, id: 2, master_id: 18", "brake, current_limit_a: 0.5", Acting::kBrake},
+        Dragged{"model: DM4310, id: 2, master_id: 18", "hold, current_limit_a: 0.5", Acting::kDamp},
+        Dragged{"model: AK80-9, id: 5", "brake, brake_current_a: 1", Acting::kBrake},
+        Dragged{"model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, velocity_limit_rpm: 600",
+                "brake, current_limit_a: 5", Acting::kNothing},
+        Dragged{"model: LK-MG5010E-i10, id: 12", "brake, current_limit_a: 0.5", Acting::kNothing}));
 
 }  // namespace
 }  // namespace rc10::test::axis_unrest_test
