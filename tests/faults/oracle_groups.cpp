@@ -132,6 +132,10 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     motor.ends_at_standstill = asked;
     return;
   }
+  // A hold after a disable stops with its group.
+  const bool held = (motor.actions & only(FallbackAction::kHold)).any() && motor.ends_at_standstill;
+  if (held && motor.group != kNoGroup && groups_[motor.group].stops_now)
+    setActions(motor, motor.actions | only(fallback.on_estop));
   // A fallback that acts already gives way to that of an e-stop, once.
   const bool gives_way =
       state_ == RobotStatus::kRun || (state_ == RobotStatus::kStopping && !estop_in_force_);

@@ -86,6 +86,12 @@ class Chassis : public ::testing::Test {
     own.set("wheels", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
     build(mecanumChassisType(), std::move(own));
   }
+  void buildSwerve() {
+    auto own = common();
+    own.set("drive", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
+    own.set("steer", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, 4)});
+    build(swerveChassisType(), own);
+  }
 
   void give(const Inputs& in) {
     module_->setInputs(
@@ -524,10 +530,7 @@ TEST_F(Chassis, DifferentialDrivesForwardAndTurnsButNotSideways) {
 }
 
 TEST_F(Chassis, SwerveSteersBeforeItDrivesAndDrivesASquare) {
-  auto own = common();
-  own.set("drive", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
-  own.set("steer", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, 4)});
-  build(swerveChassisType(), own);
+  buildSwerve();
   give({.vy_m_s = 1.0});
   run(1);
   EXPECT_NEAR(std::fabs(std::remainder(target(4) - 90.0, 180.0)), 0.0, 1e-6)
@@ -544,11 +547,22 @@ TEST_F(Chassis, SwerveSteersBeforeItDrivesAndDrivesASquare) {
   EXPECT_NEAR(output(kY), 0.0, 0.01);
 }
 
+TEST_F(Chassis, SwerveSlowsAllItsWheelsAlikeInReducedMode) {
+  buildSwerve();
+  give({.vx_m_s = 1.0, .wz_deg_s = 60.0});
+  run(3000);
+  std::array<double, 4> full{};
+  for (std::size_t i = 0; i < 4; ++i) full[i] = target(i);
+  robot_->motor(2).speed_ceiling_rpm = 10.0;
+  run(3000);
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) fastest = std::max(fastest, std::fabs(target(i)));
+  EXPECT_NEAR(fastest, 10.0, 1e-6);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_NEAR(target(i) / target(0), full[i] / full[0], 1e-3) << i;
+}
+
 TEST_F(Chassis, SwerveDoesNotDriveWhileOneWheelDoesNotKnowItsDirection) {
-  auto own = common();
-  own.set("drive", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
-  own.set("steer", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, 4)});
-  build(swerveChassisType(), own);
+  buildSwerve();
   robot_->motor(6).feedback.zeroed = false;
   give({.vx_m_s = 1.0});
   run(1);

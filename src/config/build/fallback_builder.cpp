@@ -23,16 +23,27 @@ namespace {
   return in.traits.frames.of(frameKindOf(action)) != Provision::kUnsupported;
 }
 
+// After a timeout it stays enabled: the end of a ramp is what it does without a target.
+[[nodiscard]] bool restsAfter(const MotorParse& in, std::string_view key, FallbackAction action) {
+  return action != FallbackAction::kRamp || key != "on_timeout" || in.traits.frames.idle_rests;
+}
+
 void checkFallback(MotorParse& in, std::string_view key) {
   const auto given = in.settings.find(key);
-  if (!given || able(in, fallbackOf(in, key))) return;
+  if (!given) return;
+  const auto asked = fallbackOf(in, key);
+  const bool can = able(in, asked);
+  if (can && restsAfter(in, key, asked)) return;
   std::vector<std::string> possible;
   for (std::size_t i = 0; i < kFallbackWords.size(); ++i) {
-    if (able(in, static_cast<FallbackAction>(i))) possible.emplace_back(kFallbackWords[i]);
+    const auto action = static_cast<FallbackAction>(i);
+    if (able(in, action) && restsAfter(in, key, action)) possible.emplace_back(kFallbackWords[i]);
   }
-  in.problems.error(given->place(), given->path,
-                    "the " + in.modelName() + " cannot " + given->text() + " by itself; use " +
-                        listWords(possible, " or "));
+  const std::string why =
+      can ? "a ramp ends in no torque, but the " + in.modelName() +
+                " set so stands still with its own torque while it is enabled without a target"
+          : "the " + in.modelName() + " cannot " + given->text() + " by itself";
+  in.problems.error(given->place(), given->path, why + "; use " + listWords(possible, " or "));
 }
 
 void readSeconds(MotorParse& in, std::string_view key, Duration& time) {

@@ -93,6 +93,14 @@ class Axis {
   void endFallback() noexcept { fallback_.end(); }
   /// A disable of a motor that rests already: it lets go.
   void disableOnceMore(const Tick& tick) noexcept;
+  /// It rests, but a hold that followed its disable pushes.
+  [[nodiscard]] bool holdsDisabled() const noexcept {
+    return status_ == MotorStatus::kReady && fallback_.holdsAfterDisable();
+  }
+  /// Its group stops while it holdsDisabled().
+  void stopHolding(const Tick& tick) noexcept {
+    beginFallback(entry_.fallback.on_estop, Fallback::Until::kEnded, false, tick);
+  }
   /// Before MotorEvent::kEstop of the robot: a fallback that acts already gives way to that of the e-stop.
   void estopFallback(const Tick& tick) noexcept {
     rested_ = Rested::kAsked;
@@ -177,6 +185,7 @@ class Axis {
   Stop stop_;
   std::uint32_t limits_ = 0;      ///< Active limits, as the guard reports them.
   bool reference_known_ = false;  ///< In the last tick.
+  std::uint64_t losses_ = 0;      ///< Of its reference, up to the last tick.
   std::uint64_t samples_ = 0;     ///< Count of its feedback in the last tick.
   Duration unheard_{};            ///< Time since it was heard; a pause of this thread is two periods of it.
   bool pause_forgiven_ = false;   ///< Since it was heard.

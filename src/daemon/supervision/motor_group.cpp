@@ -25,6 +25,12 @@ MotorSet MotorGroup::missing(const std::vector<Axis>& axes) const noexcept {
   return missing;
 }
 
+MotorSet MotorGroup::held(const std::vector<Axis>& axes) const noexcept {
+  MotorSet held;
+  for (const auto motor : motors) held.set(motor, axes[motor].holdsDisabled());
+  return held;
+}
+
 bool MotorGroup::waits(const std::vector<Axis>& axes) const noexcept {
   return together && std::any_of(motors.begin(), motors.end(), [&](std::size_t motor) {
            return required.test(motor) && axes[motor].status() != MotorStatus::kActive;

@@ -22,6 +22,8 @@ struct MotorGroup {
   [[nodiscard]] MotorSet on(const std::vector<Axis>& axes) const noexcept;
   /// Required members that are OFFLINE or in FAULT.
   [[nodiscard]] MotorSet missing(const std::vector<Axis>& axes) const noexcept;
+  /// Members that are READY and held since their disable.
+  [[nodiscard]] MotorSet held(const std::vector<Axis>& axes) const noexcept;
   /// It acts together, and not all of it is ACTIVE.
   [[nodiscard]] bool waits(const std::vector<Axis>& axes) const noexcept;
   /// A member was ENABLING or ACTIVE before `event`, and is not now.
@@ -47,7 +49,8 @@ struct MotorGroup {
   std::optional<std::uint64_t> first_disable;
   MotorSet left;  ///< Members that were on and have been disabled.
   std::optional<std::uint64_t>
-      let_go;  ///< Request that let go of those that rested already: once, by all it names.
+      let_go;     ///< Request that let go of those that rested already: once, by all it names.
+  MotorSet gone;  ///< missing() of the last tick.
   // Until a request changes it.
   MotorSet rests_with_it;   ///< Disabled since another member was.
   MotorSet rearm;           ///< To be enabled again by itself; empty: none.

@@ -57,7 +57,9 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
   const auto gone = group.missing(axes_);
   const bool alone = alone_ && groupOf(*alone_) == &group;
-  if (!alone && (group.on(axes_) | group.dropped).any()) {
+  // One that somebody has tried alone, while another was missing all the time, is held on.
+  const bool lost_while_held = (gone & ~std::exchange(group.gone, gone)).any() && group.held(axes_).any();
+  if (!alone && ((group.on(axes_) | group.dropped).any() || lost_while_held)) {
     if (gone.any()) {
       stopGroup(index, GroupStop::kLost, tick);
     } else if (group.refused.any()) {
@@ -87,6 +89,7 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
   for (const auto motor : group.motors) {
     if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
     if (event == MotorEvent::kDisable && isOn(axes_[motor].status())) group.rests_with_it.set(motor);
+    if (reason == GroupStop::kLost && axes_[motor].holdsDisabled()) axes_[motor].stopHolding(tick);
     transition(motor, event, why, tick);
   }
   bool returns = reason == GroupStop::kLost && !group.disable_asked &&

@@ -104,6 +104,10 @@ class Fallback {
   void disabled() noexcept {
     if (bounded_ || (kind_ == FrameKind::kDamp && !estop_)) until_ = Until::kStandstill;
   }
+  /// A hold that ends with its time or at standstill, as after a disable.
+  [[nodiscard]] bool holdsAfterDisable() const noexcept {
+    return kind_ == FrameKind::kHold && until_ == Until::kStandstill;
+  }
   /// Kind of frame for the drive; kRest while no fallback is in force.
   [[nodiscard]] FrameKind kind() const noexcept { return kind_; }
 
@@ -148,10 +152,10 @@ class Fallback {
   bool bounded_ = false;
   bool estop_ = false;
   MonotonicTime bound_{};
+  MonotonicTime ends_ = MonotonicTime::max();  ///< Of a ramp.
   FrameKind then_ = FrameKind::kDamp;
   MonotonicTime moved_{};
   double still_deg_ = 0.0;  ///< Angle at moved_; NaN: not seen yet.
 };
-  MonotonicTime ends_ = MonotonicTime::max();  ///< Of a ramp.
 
 }  // namespace rc10

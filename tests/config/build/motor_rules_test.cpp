@@ -375,6 +375,45 @@ TEST(MotorRules, ChangesOfALoadComeInTheOrderOfTimeAndChangeSomething) {
               ElementsAre(testing::HasSubstr("changes[0].stalled: unknown key")));
 }
 
+TEST(MotorRules, ARampAfterATimeoutNeedsADriveThatRestsWithoutATarget) {
+  struct Case {
+    const char* motor;
+    bool allowed;
+  };
+  for (const auto& [motor, allowed] : {
+           Case{"model: M3508, id: 1", true},
+           Case{"model: DM4310, id: 1, master_id: 17", true},
+           Case{"model: DM4310, id: 1, master_id: 17, control: velocity", false},
+           Case{"model: DM4310, id: 1, master_id: 17, control: position_velocity", false},
+           Case{"model: DM4310, id: 1, master_id: 17, control: force_position", false},
+           Case{"model: RS00, id: 3", true},
+           Case{"model: RS00, id: 3, control: velocity", true},
+           Case{"model: AK80-9, id: 5", true},
+           Case{"model: AK80-9, id: 5, protocol: mit", true},
+           Case{"model: RMD-X8-20, id: 11", true},
+           Case{"model: LK-MG5010E-i10, id: 12", true},
+           Case{"model: VESC, id: 10, pole_pairs: 7", true},
+           Case{"model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, "
+                "velocity_limit_rpm: 600",
+                true},
+       }) {
+    const auto errors = errorsOf(robotWith("{name: m, on_timeout: ramp, " + std::string{motor} + "}"));
+    EXPECT_EQ(errors.empty(), allowed) << motor << (errors.empty() ? "" : ": " + errors[0]);
+    for (const char* key : {"on_disable", "on_estop"}) {
+      const bool takes_velocities = std::string_view{motor}.find("position") == std::string_view::npos;
+      EXPECT_EQ(errorsOf(robotWith("{name: m, " + std::string{key} + ": ramp, " + motor + "}")).empty(),
+                takes_velocities)
+          << motor << ' ' << key;
+    }
+  }
+  EXPECT_THAT(
+      errorsOf(
+          robotWith("{name: m, model: DM4310, id: 1, master_id: 17, control: velocity, on_timeout: ramp}")),
+      ElementsAre("hero.yaml:6:87: buses[0].motors[0].on_timeout: a ramp ends in no torque, but the DM4310 "
+                  "set so stands still with its own torque while it is enabled without a target; use coast "
+                  "or brake"));
+}
+
 TEST(MotorRules, ADriveThatOnlyAnswersIsAskedBeforeItsSilenceIsARestart) {
   int judged = 0;
   for (const auto& entry : motorFamilies()) {

@@ -101,6 +101,25 @@ TEST_F(UnaskedDisableTest, AnEstopThatDampsIsNotLetGoByTheEndOfAProgram) {
   EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
 }
 
+TEST_F(UnaskedDisableTest, InAnEstopAfterTheEndOfAProgramOneDisableLetsGo) {
+  for (const auto action : {FallbackAction::kDamp, FallbackAction::kBrake, FallbackAction::kHold}) {
+    start({.on_timeout = FallbackAction::kHold, .on_disable = FallbackAction::kHold, .on_estop = action},
+          2.0F);
+    robot->run(500);  // silence
+    robot->carryOut(kUnasked);
+    robot->order(Operation::kEstop);
+    robot->run(500);
+    const auto acting = robot->motor(kLeft).acting;
+    ASSERT_EQ(acting, action == FallbackAction::kDamp    ? Acting::kDamp
+                      : action == FallbackAction::kBrake ? Acting::kBrake
+                                                         : Acting::kHold);
+    robot->carryOut(kUnasked);
+    EXPECT_EQ(robot->motor(kLeft).acting, acting) << "it waits for one that somebody asks for";
+    robot->order(Operation::kDisable);
+    EXPECT_EQ(robot->motor(kLeft).acting, Acting::kNothing) << "and does no on_disable";
+  }
+}
+
 TEST_F(UnaskedDisableTest, ADisableThatNobodyAskedForStopsWhatMoves) {
   start({.on_timeout = FallbackAction::kHold}, 2.0F);
   robot->carryOut(kUnasked);

@@ -88,6 +88,45 @@ TEST_F(GroupTest, AMemberThatHoldsStaysSoWhenAnotherIsDisabledAndNobodyAskedForI
   }
 }
 
+TEST_F(GroupTest, AMemberThatHoldsAfterADisableStopsWithOneThatIsLost) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  auto& right = config.buses[1].motors[0].fallback;
+  right.on_disable = FallbackAction::kHold;
+  right.on_estop = FallbackAction::kDamp;
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->run(5);
+  robot->order(Operation::kEnable);
+  drive(100);
+  robot->carryOut({.operation = Operation::kDisable, .motors = only(kLeft).set(kRight)});
+  robot->run(100);
+  ASSERT_EQ(status(kRight), MotorStatus::kReady);
+  ASSERT_EQ(robot->motor(kRight).acting, Acting::kHold);
+  (void)robot->events();
+  robot->freezeBus(0, true);
+  for (int i = 0; i < 100 && status(kLeft) != MotorStatus::kOffline; ++i) {
+    EXPECT_EQ(robot->motor(kRight).acting, Acting::kHold);
+    robot->tick();
+  }
+  ASSERT_EQ(status(kLeft), MotorStatus::kOffline);
+  EXPECT_EQ(robot->motor(kRight).acting, Acting::kDamp) << "in that tick";
+  EXPECT_TRUE(told(EventCode::kGroupStopped));
+  robot->run(100);
+  EXPECT_FALSE(told(EventCode::kGroupStopped)) << "once";
+}
+
+TEST_F(GroupTest, AMemberThatIsHeldWhileAnotherWasMissingBeforeIsNotLetGo) {
+  auto config = coupled(GroupConfig::Return::kRequest);
+  config.buses[1].motors[0].fallback.on_disable = FallbackAction::kHold;
+  robot = std::make_unique<VirtualRobot>(config);
+  robot->freezeBus(0, true);
+  robot->run(5);
+  ASSERT_EQ(robot->orderFor(only(kRight), Operation::kEnableAlone).motors[kRight], Refusal::kNone);
+  robot->hold(kRight, kVelocity120, 100);
+  robot->orderFor(only(kRight), Operation::kDisable);
+  robot->run(100);
+  EXPECT_EQ(robot->motor(kRight).acting, Acting::kHold);
+}
+
 TEST_F(GroupTest, AMemberInFaultStopsTheOthers) {
   start(GroupConfig::Return::kRearmAtRest, {.overspeed_rpm = 90.0F});
   for (int i = 0; i < 1000; ++i) {
