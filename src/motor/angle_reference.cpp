@@ -13,11 +13,11 @@ void AngleReference::update(double position_deg, bool may_restart, bool may_retu
     const bool power_on = config_.zero_at_power_on;
     const bool absolute = config_.absolute && !power_on;
     // The number of turns at power-up says nothing.
-    const double within_turn_deg = absolute ? shortestAngle(config_.zero_deg, position_deg) : 0.0;
+    const double within_turn_deg = absolute ? shortestAngle(zero_deg_, position_deg) : 0.0;
     const auto first_deg = absolute ? firstAngle(within_turn_deg, config_.travel) : std::optional{0.0};
     offset_deg_ = first_deg.value_or(within_turn_deg) - position_deg;
-    known_ = (absolute && first_deg) || power_on;
-    turn_unclear_ = !first_deg;
+    known_ = !forgotten_ && ((absolute && first_deg) || power_on);
+    turn_unclear_ = !forgotten_ && !first_deg;
     begun_ = true;
     lost_ = false;
   }
@@ -27,9 +27,11 @@ void AngleReference::update(double position_deg, bool may_restart, bool may_retu
 bool AngleReference::setZero(double angle_deg) noexcept {
   if (!begun_ || !std::isfinite(angle_deg)) return false;
   offset_deg_ = angle_deg - position_deg_;
+  zero_deg_ = shortestAngle(angle_deg, position_deg_);
   known_ = true;
   turn_unclear_ = false;
   lost_ = false;
+  forgotten_ = false;
   return true;
 }
 
@@ -43,17 +45,18 @@ void AngleReference::forget() noexcept {
   known_ = false;
   turn_unclear_ = false;
   lost_ = false;
+  forgotten_ = true;
 }
 
 void AngleReference::lose() noexcept {
   known_ = false;
   turn_unclear_ = false;
-  lost_ = config_.absolute && !config_.zero_at_power_on;
+  lost_ = config_.absolute && !config_.zero_at_power_on && !forgotten_;
 }
 
 void AngleReference::doubtTurn() noexcept {
   const bool limited = std::isfinite(config_.travel.min_deg) && std::isfinite(config_.travel.max_deg);
-  if (begun_ && limited && config_.absolute) lose();
+  if (begun_ && (limited || !config_.absolute)) lose();
 }
 
 }  // namespace rc10

@@ -15,21 +15,20 @@ class AngleReference {
     Travel travel{};                ///< Absolute only: tells the turn at power-up.
   };
 
-  explicit AngleReference(const Config& config) noexcept : config_(config) {}
+  explicit AngleReference(const Config& config) noexcept : config_(config), zero_deg_(config.zero_deg) {}
 
   /// A new reference is a jump of the angle. `may_restart`: allowed once an unclear turn has become clear, as
   /// no target follows the angle. `may_return`: allowed after the reference was lost.
   void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
-  /// The angle goes on without a known reference until setZero(), or until the drive has lost its turns and
-  /// begins anew.
+  /// The angle goes on without a known reference until setZero(), whatever becomes of the drive meanwhile.
   void forget() noexcept;
   /// The drive may have lost turns: the angle goes on, but without a known reference. An absolute drive
-  /// starts again as at power-up, once it may.
+  /// starts again as at power-up, once it may, but in the frame of the last setZero().
   void lose() noexcept;
-  /// The shaft may have been turned while the drive was off. With a travel an absolute drive starts again as
-  /// at power-up; without one there is no wrong turn, and it goes on.
+  /// The drive may have been off, and the shaft turned meanwhile: lose(). Only an absolute drive without a
+  /// travel goes on, for it has no wrong turn.
   void doubtTurn() noexcept;
 
   [[nodiscard]] bool known() const noexcept { return known_; }
@@ -48,7 +47,9 @@ class AngleReference {
   bool begun_ = false;
   bool known_ = false;
   bool turn_unclear_ = false;
-  bool lost_ = false;  ///< Absolute only.
+  bool lost_ = false;       ///< Absolute only.
+  bool forgotten_ = false;  ///< Until setZero().
+  double zero_deg_;         ///< Absolute only: Config::zero_deg, or that of the last setZero().
   double position_deg_ = 0.0;
   double offset_deg_ = 0.0;
 };

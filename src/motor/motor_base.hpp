@@ -32,6 +32,7 @@ struct MotorFeedback {
   RC10_FEEDBACK_READINGS(RC10_FIELD)
 #undef RC10_FIELD
   bool zeroed = false;        ///< The angle has a known reference.
+  std::uint64_t losses = 0;   ///< Losses of a known reference, those that ended at once included.
   bool turn_unclear = false;  ///< Absolute, but its travel does not say on which turn it stands.
   bool angle_at_end = false;  ///< The drive's field ends here: the shaft may turn on, and nobody sees it.
 };

@@ -83,6 +83,7 @@ DriveComplaint SoloMotor::scaleComplaint() const noexcept {
 }
 
 void SoloMotor::loseReference() noexcept {
+  if (reference_.known()) ++feedback_.losses;
   reference_.lose();
   feedback_.zeroed = false;
   feedback_.turn_unclear = false;
@@ -97,8 +98,14 @@ void SoloMotor::forgetReference() noexcept {
 }
 
 void SoloMotor::doubtTurn() noexcept {
+  const bool was_known = reference_.known();
   reference_.doubtTurn();
+  if (was_known && !reference_.known()) {
+    ++feedback_.losses;
+    holding_ = false;
+  }
   feedback_.zeroed = reference_.known();
+  feedback_.turn_unclear = reference_.turnUnclear();
 }
 
 bool SoloMotor::setZero(double angle_deg) noexcept {

@@ -102,8 +102,35 @@ TEST(AngleReference, OneThatIsForgottenStaysUnknownUntilItIsSetThoughItsEncoderI
   reference.forget();
   reference.lose();  // its drive was restarted
   reference.update(50.0);
-  EXPECT_TRUE(reference.known());
-  EXPECT_EQ(reference.totalAngleDeg(), 50.0);
+  EXPECT_FALSE(reference.known());
+  EXPECT_TRUE(reference.setZero(5.0));
+  reference.lose();
+  reference.update(60.0);
+  EXPECT_TRUE(reference.known()) << "somebody has set it since";
+}
+
+TEST(AngleReference, OneThatIsForgottenBeforeItsFirstPositionIsUnknownToo) {
+  AngleReference reference({.absolute = true, .travel = {-720.0, 720.0}});
+  reference.forget();
+  reference.update(30.0);
+  EXPECT_FALSE(reference.known());
+  EXPECT_FALSE(reference.turnUnclear());
+}
+
+TEST(AngleReference, ALossReturnsInTheFrameOfTheLastZero) {
+  AngleReference arm({.absolute = true, .zero_deg = 5.0, .travel = {-10.0, 100.0}});
+  arm.update(42.0);
+  ASSERT_TRUE(arm.setZero(0.0));  // homed where the file says 37 deg
+  arm.lose();
+  arm.update(402.0);  // on another turn of its drive
+  EXPECT_TRUE(arm.known());
+  EXPECT_DOUBLE_EQ(arm.totalAngleDeg(), 0.0);
+  arm.doubtTurn();
+  arm.update(-28.0);  // 70 deg back, which is beyond the travel and its gap on that side
+  EXPECT_DOUBLE_EQ(arm.totalAngleDeg(), -70.0);
+  arm.doubtTurn();
+  arm.update(-178.0);
+  EXPECT_DOUBLE_EQ(arm.totalAngleDeg(), 140.0) << "of two turns the nearer one to its travel";
 }
 
 TEST(AngleReference, AShaftThatMayHaveBeenTurnedIsWhereItsTravelSays) {
@@ -186,7 +213,7 @@ TEST(AngleReference, ATurnIsDoubtedWhereBothLimitsTellIt) {
   AngleReference counted({.zero_at_power_on = true, .travel = {-90.0, 90.0}});
   counted.update(10.0);
   counted.doubtTurn();
-  EXPECT_TRUE(counted.known()) << "its drive counts from power-on";
+  EXPECT_FALSE(counted.known()) << "it counts only while it lives";
 }
 
 TEST(AngleReference, NoFileKeepsAZeroThatPowerOnSets) {

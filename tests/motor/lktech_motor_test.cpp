@@ -282,6 +282,59 @@ TEST_F(LKTechMotor, ASilenceIsBridgedWhenTheDrivesTurnsSaySo) {
   EXPECT_TRUE(motor_->feedback().zeroed);
 }
 
+/// Its arm turns once for five turns of the drive, so no encoder tells its angle.
+class LKTechArm : public LKTechMotor {
+ protected:
+  LKTechArm() : LKTechMotor(settingsOfAnArm()) {}
+  static MotorSettings settingsOfAnArm() {
+    auto settings = settingsOf();
+    settings.gear_ratio = 5.0;
+    return settings;
+  }
+  static std::uint16_t encoderAt(double deg) {
+    return static_cast<std::uint16_t>(std::lround(std::remainder(deg - 180.0, 360.0) / 360.0 * 65536.0) +
+                                      32768);
+  }
+  /// Its drive is heard with this count after a silence.
+  void returnAfter(Duration silence, double count_deg) {
+    now_ += silence;
+    hear(readingReply(0, 0, encoderAt(count_deg)));
+    hear(angleReply(static_cast<std::int32_t>(std::lround(count_deg * 100.0))));
+    hear(readingReply(0, 0, encoderAt(count_deg)));
+  }
+  /// Zeroed at 0, and turned until its drive counts so much.
+  void turnTo(double count_deg) {
+    comeOnline(encoderAt(10.0));
+    ASSERT_TRUE(motor_->setZero(2.0));
+    for (double deg = 20.0; deg <= count_deg; deg += 10.0) {
+      (void)tick();
+      hear(readingReply(0, 0, encoderAt(deg)));
+    }
+    ASSERT_NEAR(motor_->feedback().total_angle_deg, count_deg / 5.0, 0.01);
+    ASSERT_TRUE(motor_->feedback().zeroed);
+  }
+};
+
+// Turned on by 300 deg of the drive while it was off: it counts from 0 again and shows 40 deg.
+TEST_F(LKTechArm, ThatWasOffAndTurnedHasNoReference) {
+  turnTo(100.0);
+  returnAfter(std::chrono::seconds{5}, 40.0);
+  EXPECT_FALSE(motor_->feedback().zeroed);
+}
+
+TEST_F(LKTechArm, WhoseDriveCountsMoreThanAFreshOneHasLivedOn) {
+  turnTo(800.0);
+  returnAfter(std::chrono::seconds{5}, 860.0);
+  EXPECT_TRUE(motor_->feedback().zeroed);
+  EXPECT_NEAR(motor_->feedback().total_angle_deg, 172.0, 0.01);
+}
+
+TEST_F(LKTechArm, KeepsItsReferenceOverASilenceInWhichNoDriveStarts) {
+  turnTo(100.0);
+  returnAfter(std::chrono::milliseconds{90}, 100.0);
+  EXPECT_TRUE(motor_->feedback().zeroed);
+}
+
 TEST_F(LKTechMotor, TurnsThatTheDriveHasForgottenAreAComplaintWhileItWasToObey) {
   comeOnline(0x2000, 2);
   (void)told({.mode = ControlMode::kTotalAngle, .value = 10.0});

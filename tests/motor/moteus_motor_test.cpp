@@ -281,6 +281,7 @@ TEST(MoteusMotor, ALongSilenceMayHideARestart) {
   auto settings = moteusMotor();
   settings.zero_at_power_on = true;
   MoteusBench bench(settings);
+  bench.now = MonotonicTime{65'536ms * 10 + 5s};
   bench.motor.order(FrameKind::kPoll);
   bench.answer({});
   bench.now += 20s;
@@ -289,6 +290,33 @@ TEST(MoteusMotor, ALongSilenceMayHideARestart) {
   bench.now += 40s;
   bench.answer({});
   EXPECT_FALSE(bench.motor.feedback().zeroed);
+}
+
+TEST(MoteusMotor, AClockThatCouldBeThatOfARestartedDriveLosesTheReference) {
+  auto settings = moteusMotor();
+  settings.zero_at_power_on = true;
+  MoteusBench bench(settings);
+  bench.now = MonotonicTime{65'536ms * 10 + 44'999ms};
+  bench.motor.order(FrameKind::kPoll);
+  bench.answer({.position_rev = 3.0});
+  ASSERT_TRUE(bench.motor.feedback().zeroed);
+  // Off for 20.35 s, and on since 50 ms, where the clock of before would be at 65,400.
+  bench.now += 20'399ms;
+  bench.answer({.position_rev = 0.2, .clock_late = bench.now.time_since_epoch() - 49ms});
+  EXPECT_FALSE(bench.motor.feedback().zeroed);
+}
+
+TEST(MoteusMotor, ItsClockGoesRoundWithoutALossOverAShortSilence) {
+  auto settings = moteusMotor();
+  settings.zero_at_power_on = true;
+  MoteusBench bench(settings);
+  bench.now = MonotonicTime{65'536ms * 10 - 40ms};
+  bench.motor.order(FrameKind::kPoll);
+  for (int i = 0; i < 10; ++i) {
+    bench.answer({});
+    bench.now += 90ms;
+  }
+  EXPECT_TRUE(bench.motor.feedback().zeroed);
 }
 
 TEST(MoteusMotor, AClockThatIsOnlyLateIsNoRestart) {

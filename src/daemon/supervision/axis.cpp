@@ -141,9 +141,11 @@ Refusal Axis::motionRefusal(const Tick& tick) const noexcept {
 // ---- Once a tick
 
 bool Axis::losesReference(const Tick& tick) noexcept {
-  const bool known = motor_.feedback().zeroed;
-  const bool lost = reference_known_ && !known;
-  reference_known_ = known;
+  const auto& feedback = motor_.feedback();
+  // An absolute one may have been found again within this tick.
+  const bool lost = reference_known_ && (!feedback.zeroed || feedback.losses != losses_);
+  reference_known_ = feedback.zeroed;
+  losses_ = feedback.losses;
   if (lost && needsReference(motor_.target().mode)) {
     dropTarget();
     beginTimeoutFallback(StopCause::kReference, tick);

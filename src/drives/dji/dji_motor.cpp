@@ -114,6 +114,7 @@ bool DJI_Motor::setZero(double angle_deg) noexcept {
   const double before_deg = feedback_.total_angle_deg;
   setReference(angle_deg);
   encoder_.acknowledgeLoss();
+  forgotten_ = false;
   feedback_.zeroed = true;
   feedback_.turn_unclear = false;
   updateAngles();
@@ -136,14 +137,14 @@ double DJI_Motor::zeroForFile() const noexcept {
 }
 
 void DJI_Motor::forgetReference() noexcept {
-  encoder_.acknowledgeLoss();  // or an absolute one would be found again
+  forgotten_ = true;
   feedback_.zeroed = false;
   feedback_.turn_unclear = false;
   holding_ = false;
 }
 
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
-  if (!absolute_ || !encoder_.referenceLost() || isAngle(followed)) return;
+  if (!absolute_ || forgotten_ || !encoder_.referenceLost() || isAngle(followed)) return;
   findTurn(feedback_.total_angle_deg);
   encoder_.acknowledgeLoss();
   updateAngles();

@@ -112,6 +112,7 @@ class DJI_Motor : public Motor_Base {
   double reference_deg_ = 0.0;
   double hold_deg_ = 0.0;
   bool holding_ = false;
+  bool forgotten_ = false;         ///< forgetReference(), until setZero().
   std::uint64_t hold_losses_ = 0;  ///< Losses of the encoder, when the hold began.
   Target own_;                     ///< Target of an order that has none.
   float silence_s_ = 0.0F;         ///< Ticks since the last sample, in seconds.

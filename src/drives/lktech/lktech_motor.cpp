@@ -28,6 +28,8 @@ constexpr float kStandingRpm = 1.0F;
 /// By how much the two may differ for other reasons.
 constexpr double kSameAngleDeg = 1.0;
 constexpr double kShiftSeenDeg = 10.0;
+// A drive that has just started counts less than a turn, to either side.
+constexpr double kFreshCountDeg = kDegPerTurn + 1.0;
 // Encoder and count are two answers.
 constexpr double kInstantsApartS = 0.03;
 
@@ -162,9 +164,9 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
       shift_known_ = std::abs(shift_deg) > std::max(kShiftSeenDeg, between_deg);
       shift_deg_ = shift_known_ ? shift_deg : 0.0;
     } else {
-      // Within half a turn of its last count it may have been restarted all the same.
       position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
-      doubtTurn();
+      // Within half a turn of its last count it may have been restarted all the same.
+      if (std::abs(angle_deg) < kFreshCountDeg) doubtTurn();
     }
     counted_ = true;
     was_counted_ = true;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -93,6 +94,7 @@ FrameVerdict Moteus_Motor::updateFeedback(const CanFrame& frame) noexcept {
 }
 
 // Its clock counts from power-up, so after a restart it shows no more than the time since its last answer.
+// Over a short silence it is a restart only if the clock has not gone on: it goes round each minute.
 bool Moteus_Motor::restarted(MonotonicTime received, double clock_ms) noexcept {
   if (!std::isfinite(clock_ms)) return false;  // one value in 65536 reads as "not a number"
   const double before_ms = clock_ms_;
@@ -102,9 +104,13 @@ bool Moteus_Motor::restarted(MonotonicTime received, double clock_ms) noexcept {
   if (!before) return false;
   const double passed_ms = inMilliseconds(received - *before);
   if (passed_ms > kLongestGapMs) return true;
+  if (clock_ms_ > passed_ms + kClockToleranceMs) return false;
   const double off_ms = std::remainder(clock_ms_ - before_ms - passed_ms, kClockRangeMs);
-  return std::abs(off_ms) > kClockToleranceMs && clock_ms_ <= passed_ms + kClockToleranceMs;
+  return received - *before > shortestOff() || std::abs(off_ms) > kClockToleranceMs;
 }
+
+// A drive is not off for less, nor for a gap of a few answers.
+Duration Moteus_Motor::shortestOff() const noexcept { return std::max(kLongestStep, 3 * feedbackPeriod()); }
 
 // Farther than its speed can have taken it: restarted, or its position was set by somebody else.
 bool Moteus_Motor::jumped(MonotonicTime received, const Reading& reading) const noexcept {

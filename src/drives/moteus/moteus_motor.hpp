@@ -73,6 +73,7 @@ class Moteus_Motor final : public SoloMotor {
   enum class Step : std::uint8_t { kNone, kIdentify, kEngage, kVerify, kDone, kFailed };
 
   [[nodiscard]] static bool decode(const CanFrame& frame, Reading& reading) noexcept;
+  [[nodiscard]] Duration shortestOff() const noexcept;
   [[nodiscard]] bool restarted(MonotonicTime received, double clock_ms) noexcept;
   [[nodiscard]] bool jumped(MonotonicTime received, const Reading& reading) const noexcept;
   void takePosition(double position_rev, bool anew) noexcept;

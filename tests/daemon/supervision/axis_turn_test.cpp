@@ -2,8 +2,10 @@
 // one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
@@ -65,6 +67,14 @@ class TurnTest : public ::testing::TestWithParam<Subject> {
     robot.run(20);
     return refusal;
   }
+  /// Its power was away for a moment.
+  static void restart(VirtualRobot& robot) {
+    robot.simBus().drive(kArm).restart();
+    robot.freezeBus(0, true);
+    robot.run(300);
+    robot.freezeBus(0, false);
+    robot.run(3000);
+  }
   static bool reversed() {
     return std::string_view{GetParam().motor}.find("direction") != std::string_view::npos;
   }
@@ -98,6 +108,28 @@ TEST_P(TurnTest, OfAWheelWithoutLimitsNeedsNothing) {
   VirtualRobot robot(configOf(GetParam(), "", 100.0));
   EXPECT_EQ(enable(robot), Refusal::kNone);
   EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
+}
+
+// The arm was homed 37 deg from where its file has the zero.
+TEST_P(TurnTest, IsInTheFrameOfItsLastZeroAfterItsDriveWasRestarted) {
+  for (const char* limits : {"", ", angle_min_deg: -10, angle_max_deg: 100"}) {
+    VirtualRobot robot(configOf(GetParam(), limits, (reversed() ? -1.0 : 1.0) * 107.0));
+    for (int i = 0; i < 4000 && robot.motor(kArm).status != MotorStatus::kReady; ++i) robot.run(1);
+    for (int i = 0; i < 4000 && !robot.motor(kArm).feedback.zeroed; ++i) robot.run(1);
+    ASSERT_TRUE(robot.motor(kArm).feedback.zeroed) << limits;
+    ASSERT_EQ(robot.order(Operation::kZero, 0.0).motors[kArm], Refusal::kNone) << limits;
+    robot.run(3000);  // a clock that shows less than before
+    (void)robot.events();
+    restart(robot);
+    const auto events = robot.events();
+    const bool told = std::any_of(events.begin(), events.end(),
+                                  [](const Event& event) { return event.code == EventCode::kReferenceLost; });
+    // Whose encoder alone tells the angle, that drive has no turn that could be wrong.
+    const bool goes_on = std::string_view{GetParam().name} == "LkTech" && *limits == '\0';
+    EXPECT_NE(told, goes_on) << limits;
+    EXPECT_TRUE(robot.motor(kArm).feedback.zeroed) << "its encoder has found it again" << limits;
+    EXPECT_NEAR(robot.motor(kArm).feedback.total_angle_deg, 0.0, 0.5) << limits;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TurnTest, ::testing::ValuesIn(kSubjects),

@@ -228,6 +228,41 @@ TEST_F(JointOfARobot, HomesWithACurrentThatIsSlewedAndFromItsFarStop) {
   EXPECT_NEAR(shaft().outputAngleDeg() - angleDeg(), kStopDeg, 0.1);
 }
 
+/// Motors whose encoder tells their angle at power-up.
+class JointWithAnEncoder : public JointOfARobot, public ::testing::WithParamInterface<Keys> {};
+
+TEST_P(JointWithAnEncoder, ThatFailedToHomeHasNoReferenceAfterARestartOfItsDriveEither) {
+  start(GetParam());
+  robot->simBus().stall(0, true);
+  home();
+  ASSERT_EQ(state(), kHomingFailed);
+  robot->simBus().stall(0, false);
+  sends = false;
+  robot->simBus().drive(0).restart();
+  robot->freezeBus(0, true);
+  run(300);
+  robot->freezeBus(0, false);
+  run(3000);
+  EXPECT_EQ(output(4), 0.0) << "homed";
+  EXPECT_FALSE(robot->motor(kArm).feedback.zeroed);
+  enable();
+  for (int i = 0; i < 200; ++i) {
+    robot->command(kArm, {.mode = ControlMode::kTotalAngle, .value = 30.0});
+    tick();
+    ASSERT_NE(robot->motor(kArm).target.mode, ControlMode::kTotalAngle);
+  }
+  EXPECT_EQ(output(4), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Families, JointWithAnEncoder,
+    ::testing::Values(Keys{.motor = "model: GM6020, id: 5, command: current",
+                           .joint = "homing_velocity_rpm: -10, homing_current_a: 0.5"},
+                      Keys{.motor = "model: DM4310, id: 1, master_id: 17"},
+                      Keys{.motor = "model: RS00, id: 3"},
+                      Keys{.motor = "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true",
+                           .bus = "data_bitrate: 5000000\n    "}));
+
 // ---- In each family
 
 struct Subject {
