@@ -195,7 +195,6 @@ class Axis {
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.
   MonotonicTime last_skip_report_{};
   MonotonicTime first_tick_{};
-  std::uint64_t losses_ = 0;      ///< Of its reference, up to the last tick.
   bool missed_ = false;  ///< missesDrive() has said so.
 };
 
