@@ -6,8 +6,10 @@
 #include <iterator>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "app/angle.hpp"
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
 
@@ -25,7 +27,8 @@ struct Subject {
 void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
 
 constexpr const char* kOdrive =
-    "model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600";
+    "model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, current_limit_a: 20, velocity_limit_rpm: 600, "
+    "zero: power_on";
 
 const Subject kSubjects[] = {
     {"M3508", "model: M3508, id: 1, zero: power_on", 1.0},
@@ -129,6 +132,56 @@ TEST_P(HeldLoad, IsNotLetGoWhenItsTargetEndsInAPause) {
   EXPECT_LT(before_deg - lowest_deg, sags ? 8.0 : 0.6);
 }
 
+/// A motor whose own loop carries the load, without a key that slows it down.
+class HeldLoadOfALoop : public HeldLoad {
+ protected:
+  /// Its order in the tick after a pause, in which its target has ended and nothing was heard.
+  FrameKind orderedAfter(const Target& target, int ticks) {
+    robot.hold(kMotor, target, ticks);
+    robot.freezeSimulation(true);
+    robot.tick(60);
+    robot.freezeSimulation(false);
+    return robot.robot().motors()[kMotor].motor->ordered();
+  }
+};
+
+TEST_P(HeldLoadOfALoop, IsHeldAfterAPauseWhereverItHadNoReasonToLeaveItsPlace) {
+  (void)heldDeg();
+  EXPECT_EQ(orderedAfter({.mode = ControlMode::kVelocity}, 2000), FrameKind::kHold);
+  const double turn_deg = static_cast<double>(robot.motor(kMotor).feedback.angle_deg);
+  EXPECT_EQ(orderedAfter({.mode = ControlMode::kAngle, .value = turn_deg}, 2000), FrameKind::kHold);
+  EXPECT_EQ(orderedAfter({.mode = ControlMode::kBrake}, 2000), FrameKind::kHold);
+}
+
+TEST_P(HeldLoadOfALoop, IsNotHeldAfterAPauseWhereItsTargetLedElsewhere) {
+  const double place_deg = heldDeg();
+  robot.simBus().stall(kMotor, true);
+  EXPECT_EQ(orderedAfter({.mode = ControlMode::kVelocity, .value = 30.0}, 2000), FrameKind::kIdle);
+  EXPECT_EQ(orderedAfter({.mode = ControlMode::kTotalAngle, .value = place_deg + 30.0}, 2000),
+            FrameKind::kIdle);
+  const double beside_deg = wrapDegrees(static_cast<double>(robot.motor(kMotor).feedback.angle_deg) + 30.0);
+  EXPECT_EQ(orderedAfter({.mode = ControlMode::kAngle, .value = beside_deg}, 2000), FrameKind::kIdle);
+}
+
+TEST(HeldAfterAPause, IsAMotorThatAFallbackHasBraked) {
+  for (const auto& [action, ordered] : {std::pair{FallbackAction::kBrake, FrameKind::kBrake},
+                                        std::pair{FallbackAction::kDamp, FrameKind::kDamp}}) {
+    auto config = configOf(kSubjects[0], "");
+    config.buses[0].motors[0].fallback.on_timeout = action;
+    VirtualRobot robot{config};
+    robot.run(5);
+    robot.order(Operation::kEnable);
+    robot.hold(0, {.mode = ControlMode::kVelocity}, 200);
+    robot.run(200);  // silence
+    const auto* motor = robot.robot().motors()[0].motor.get();
+    ASSERT_EQ(motor->ordered(), ordered);
+    robot.exchange().estop.store(true);
+    robot.freezeSimulation(true);
+    robot.tick(60);
+    EXPECT_EQ(motor->ordered(), FrameKind::kHold);
+  }
+}
+
 // A spring drive has no integral that would hold it.
 class HeldLoadOfASpring : public HeldLoad {};
 
@@ -174,10 +227,10 @@ std::string nameOf(const ::testing::TestParamInfo<std::tuple<Subject, const char
                                                           : "LongSoftStart");
 }
 
-std::vector<Subject> springs() {
+std::vector<Subject> thatAre(bool springs) {
   std::vector<Subject> all;
   std::copy_if(std::begin(kSubjects), std::end(kSubjects), std::back_inserter(all),
-               [](const Subject& subject) { return subject.springs; });
+               [springs](const Subject& subject) { return subject.springs == springs; });
   return all;
 }
 
@@ -185,8 +238,12 @@ INSTANTIATE_TEST_SUITE_P(All, HeldLoad,
                          ::testing::Combine(::testing::ValuesIn(kSubjects), ::testing::ValuesIn(kSlews)),
                          nameOf);
 
+INSTANTIATE_TEST_SUITE_P(All, HeldLoadOfALoop,
+                         ::testing::Combine(::testing::ValuesIn(thatAre(false)), ::testing::Values("")),
+                         nameOf);
+
 INSTANTIATE_TEST_SUITE_P(All, HeldLoadOfASpring,
-                         ::testing::Combine(::testing::ValuesIn(springs()), ::testing::ValuesIn(kSlews)),
+                         ::testing::Combine(::testing::ValuesIn(thatAre(true)), ::testing::ValuesIn(kSlews)),
                          nameOf);
 
 }  // namespace

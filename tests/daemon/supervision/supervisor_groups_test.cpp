@@ -1,6 +1,7 @@
 // Motors that stop together.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ MotorSet only(std::size_t motor) { return MotorSet{}.set(motor); }
 
 constexpr Target kVelocity120{.mode = ControlMode::kVelocity, .value = 120.0};
 
-/// `left` and `right` are coupled, on buses of their own; `yaw` shares the bus of `left`.
+/// `left` and `right` are coupled, on two buses; `yaw` shares the bus of `right`.
 RobotConfig coupled(GroupConfig::Return on_return, const GuardConfig& guard = {}) {
   auto config = twoWheelsAndYaw();
   BusConfig other = config.buses[0];
@@ -52,6 +53,15 @@ class GroupTest : public ::testing::Test {
     robot->freezeBus(0, true);
     robot->run(ticks);
     robot->freezeBus(0, false);
+  }
+  /// Somebody else commands the drive of `left`.
+  void foreignCommands() {
+    CanFrame frame = makeClassicFrame({0x200, false}, std::array<std::uint8_t, 8>{1});
+    for (int i = 0; i < 3; ++i) {
+      frame.received = robot->now();
+      ASSERT_TRUE(robot->inboxes()[0].frames.push(frame));
+      robot->tick();
+    }
   }
   bool told(EventCode code) {
     const auto events = robot->events();
@@ -235,6 +245,67 @@ TEST_F(GroupTest, AnEstopOrADisableInBetweenEndsTheRearming) {
     EXPECT_EQ(status(kLeft), MotorStatus::kReady) << estop;
     EXPECT_EQ(status(kRight), MotorStatus::kReady) << estop;
   }
+}
+
+// A fault of a member that is back waits for a person, who clears it and enables them himself.
+TEST_F(GroupTest, AFaultOfAMemberEndsTheRearming) {
+  start(GroupConfig::Return::kRearmAtRest);
+  losePower(50);
+  robot->run(5);
+  ASSERT_EQ(status(kLeft), MotorStatus::kReady);
+  foreignCommands();
+  ASSERT_EQ(status(kLeft), MotorStatus::kFault);
+  robot->orderFor(only(kLeft), Operation::kClear);
+  robot->run(20'000);
+  EXPECT_EQ(status(kLeft), MotorStatus::kReady);
+  EXPECT_EQ(status(kRight), MotorStatus::kReady);
+  EXPECT_FALSE(told(EventCode::kGroupRearmed));
+}
+
+TEST_F(GroupTest, MembersThatStandWaitForOneThatIsLost) {
+  start(GroupConfig::Return::kRearmAtRest);
+  for (int i = 0; i < 2000; ++i) {
+    for (const auto motor : {kLeft, kRight}) robot->command(motor, {.mode = ControlMode::kBrake});
+    robot->tick();
+  }
+  losePower(1500);
+  ASSERT_EQ(status(kRight), MotorStatus::kReady);
+  robot->run(1000);
+  EXPECT_EQ(status(kLeft), MotorStatus::kActive);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
+}
+
+/// What becomes of an optional member while the others come back.
+class OptionalMemberTest : public GroupTest {
+ protected:
+  /// `right` falls silent, and meanwhile this happens to `left`, which is optional and was ACTIVE.
+  template <typename Happens>
+  void loseRightAnd(const Happens& happens) {
+    auto config = coupled(GroupConfig::Return::kRearmAtRest);
+    config.buses[0].motors[0].optional = true;
+    robot = std::make_unique<VirtualRobot>(config);
+    robot->run(5);
+    robot->order(Operation::kEnable);
+    drive(100);
+    robot->freezeBus(1, true);
+    robot->run(50);
+    ASSERT_EQ(status(kLeft), MotorStatus::kReady) << "it stops with its group";
+    happens();
+    robot->freezeBus(1, false);
+    robot->run(20'000);
+  }
+};
+
+TEST_F(OptionalMemberTest, ThatIsSilentIsNotWaitedFor) {
+  loseRightAnd([this] { robot->simBus(0).silence(0, true); });
+  EXPECT_EQ(status(kLeft), MotorStatus::kOffline);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
+}
+
+TEST_F(OptionalMemberTest, InFaultKeepsNobodyFromComingBack) {
+  loseRightAnd([this] { foreignCommands(); });
+  EXPECT_EQ(status(kLeft), MotorStatus::kFault);
+  EXPECT_EQ(status(kRight), MotorStatus::kActive);
 }
 
 // ---- All or none
@@ -436,22 +507,6 @@ TEST_F(TogetherTest, NoneIsEnabledWhileOneCannotBe) {
   EXPECT_EQ(status(kRight), MotorStatus::kReady);
 }
 
-TEST_F(TogetherTest, NoTargetActsBeforeAllAreActive) {
-  robot->beginEnabling(only(kLeft) | only(kRight));
-  bool waited = false;
-  for (int i = 0; i < 100; ++i) {
-    for (const auto motor : {kLeft, kRight}) robot->command(motor, kVelocity120);
-    robot->tick();
-    const bool whole = status(kLeft) == MotorStatus::kActive && status(kRight) == MotorStatus::kActive;
-    waited |= !whole && (status(kLeft) == MotorStatus::kActive || status(kRight) == MotorStatus::kActive);
-    if (whole) continue;
-    EXPECT_EQ(robot->motor(kLeft).target.mode, ControlMode::kCoast);
-    EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kCoast);
-  }
-  EXPECT_EQ(robot->motor(kRight).target.mode, ControlMode::kVelocity);
-  RecordProperty("waited", waited);
-}
-
 TEST_F(TogetherTest, AMemberIsEnabledAloneWithoutTheOthers) {
   robot->freezeBus(0, true);
   robot->run(50);
@@ -472,6 +527,26 @@ RobotConfig lifter(const std::string& more_of_arm) {
       "lifter.yaml");
   EXPECT_TRUE(outcome.config) << outcome.errorText();
   return outcome.config.value_or(twoWheelsAndYaw());
+}
+
+TEST(GroupThatActsTogether, FollowsNoTargetBeforeAllAreActive) {
+  VirtualRobot robot{lifter("")};
+  robot.run(100);
+  robot.beginEnabling(only(0) | only(1));
+  bool waited = false;
+  for (int i = 0; i < 500 && robot.motor(0).target.mode == ControlMode::kCoast; ++i) {
+    for (const auto motor : {0U, 1U}) robot.command(motor, {.mode = ControlMode::kVelocity, .value = 5.0});
+    robot.tick();
+    const auto arm = robot.motor(0).status;
+    const auto wheel = robot.motor(1).status;
+    if (arm == MotorStatus::kActive && wheel == MotorStatus::kActive) continue;
+    waited |= wheel == MotorStatus::kActive && arm == MotorStatus::kEnabling;
+    EXPECT_EQ(robot.motor(0).target.mode, ControlMode::kCoast);
+    EXPECT_EQ(robot.motor(1).target.mode, ControlMode::kCoast);
+  }
+  EXPECT_TRUE(waited);
+  EXPECT_EQ(robot.motor(0).target.mode, ControlMode::kVelocity);
+  EXPECT_EQ(robot.motor(1).target.mode, ControlMode::kVelocity);
 }
 
 TEST(GroupThatActsTogether, DoesNotComeBackInPartIfItWasNotWhole) {
