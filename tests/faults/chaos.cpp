@@ -75,6 +75,11 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     motor.reduced.velocity_rpm *= 0.25F;
     motor.reduced.tolerance_rpm *= 0.25F;
   }
+  if (lie.kind == Lie::Kind::kReducedEffort) motor.reduced.effort_share *= 0.25F;
+  if (lie.kind == Lie::Kind::kFallback) {
+    const auto& [bus, drive] = places_[lie.motor];
+    motor.fallback = robotOf(lie.robot).buses[bus].motors[drive].fallback;
+  }
   if (lie.kind == Lie::Kind::kFirstStep) motor.shaping.max_first_step_deg *= 0.1;
   if (lie.kind == Lie::Kind::kTurn) {
     motor.shaping.angle_min_deg += 360.0;
@@ -86,12 +91,14 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     motor.shaping.angle_slew_deg_per_s *= 0.25F;
     motor.shaping.effort_slew_per_s *= 0.25F;
   }
-  if (lie.kind != Lie::Kind::kLimits) return config;
   auto& settings = motor.settings;
-  if (settings.effort_limit <= 0.0F) settings.effort_limit = motor.traits().effort_full_scale;
-  settings.effort_limit *= 0.25F;
-  settings.velocity_limit_rpm *= 0.25F;
-  motor.shaping.soft_start_s = 0.0F;  // of smaller limits it would be slower than it is
+  if (lie.kind == Lie::Kind::kEffort) {
+    if (settings.effort_limit <= 0.0F) settings.effort_limit = motor.traits().effort_full_scale;
+    settings.effort_limit *= 0.25F;
+  }
+  if (lie.kind == Lie::Kind::kSpeed) settings.velocity_limit_rpm *= 0.25F;
+  // Of a smaller limit it would be slower than it is.
+  if (lie.kind == Lie::Kind::kEffort || lie.kind == Lie::Kind::kSpeed) motor.shaping.soft_start_s = 0.0F;
   return config;
 }
 
@@ -103,6 +110,10 @@ void Chaos::start() {
   for (std::size_t bus = 0; bus < config_.buses.size(); ++bus) {
     for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive)
       places_.emplace_back(bus, drive);
+  }
+  if (lie_ && lie_->kind == Lie::Kind::kFallback) {
+    const auto& [bus, drive] = places_[lie_->motor];
+    config_.buses[bus].motors[drive].fallback.on_timeout = FallbackAction::kCoast;
   }
   standSomewhere();
   robot_ = std::make_unique<VirtualRobot>(config_);

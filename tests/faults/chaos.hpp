@@ -25,23 +25,26 @@ class Chaos {
   /// For tests of the oracle: what it believes of one robot, wrongly, and has to contradict.
   struct Lie {
     enum class Kind : std::uint8_t {
-      kLimits,     ///< A motor has a quarter of its limits.
-      kStuck,      ///< A motor goes on following the first thing that it was told.
-      kSlew,       ///< Targets of a motor change at a quarter of its slew limits.
-      kSoftStart,  ///< The soft start of a motor takes four times as long.
-      kReduced,    ///< A motor may turn at a quarter of its reduced speed.
-      kFirstStep,  ///< The first angle of a motor may be a tenth as far away.
-      kTurn,       ///< The travel of a motor lies a turn farther.
-      kZero,       ///< Each zero of a motor was asked for a degree higher.
-      kGroup,      ///< A motor belongs to the first group of its robot, too.
-      kPace,       ///< Scans of a robot listen a minute longer.
-      kHoming,     ///< The joints of a robot home at a quarter of their velocity.
-      kTravel,     ///< They home within a tenth of their travel.
-      kSilence,    ///< The gimbals of a robot hold for a quarter of the time without a client.
+      kEffort,         ///< A motor has a quarter of its limit of effort.
+      kSpeed,          ///< A motor has a quarter of its limit of speed.
+      kStuck,          ///< A motor goes on following the first thing that it was told.
+      kSlew,           ///< Targets of a motor change at a quarter of its slew limits.
+      kSoftStart,      ///< The soft start of a motor takes four times as long.
+      kReduced,        ///< A motor may turn at a quarter of its reduced speed.
+      kReducedEffort,  ///< A motor may have a quarter of its reduced effort.
+      kFallback,       ///< A motor that coasts without commands does what its file says.
+      kFirstStep,      ///< The first angle of a motor may be a tenth as far away.
+      kTurn,           ///< The travel of a motor lies a turn farther.
+      kZero,           ///< Each zero of a motor was asked for a degree higher.
+      kGroup,          ///< A motor belongs to the first group of its robot, too.
+      kPace,           ///< Scans of a robot listen a minute longer.
+      kHoming,         ///< The joints of a robot home at a quarter of their velocity.
+      kTravel,         ///< They home within a tenth of their travel.
+      kSilence,        ///< The gimbals of a robot hold for a quarter of the time without a client.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;
-    Kind kind = Kind::kLimits;
+    Kind kind = Kind::kEffort;
   };
   explicit Chaos(Choices& choices, std::optional<Lie> lie = std::nullopt);
 

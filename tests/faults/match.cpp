@@ -192,6 +192,15 @@ void Match::leadAstray(std::size_t motor) {
       {.by_deg = kDegPerTurn / 2.0 - deg, .speed_rpm = kBackRpm, .torque_nm = kBackNm, .hold = 0s});
 }
 
+// What turns one motor of the lift turns the other: they move one thing.
+std::vector<std::size_t> Match::oneThing(std::size_t motor) const {
+  if (kRoles.at(motor).name != "lift_left" && kRoles.at(motor).name != "lift_right") return {motor};
+  std::vector<std::size_t> both;
+  for (std::size_t i = 0; i < kRoles.size(); ++i)
+    if (kRoles.at(i).name.substr(0, 5) == "lift_") both.push_back(i);
+  return both;
+}
+
 void Match::begin(Trouble trouble) {
   auto& player = somebody();
   const auto& role = kRoles.at(player.motor);
@@ -203,14 +212,20 @@ void Match::begin(Trouble trouble) {
   switch (trouble) {
     case Trouble::kShove:
       // A motor at rest is a free wheel, which would turn on for long.
-      if (player.was_active) load(player, sign * push, between(50, 500));
+      if (player.was_active) {
+        const auto time = between(50, 500);
+        for (const auto motor : oneThing(player.motor)) load(players_[motor], sign * push, time);
+      }
       break;
-    case Trouble::kHand:
-      busOf(player).turnByHand(player.drive, {.by_deg = sign * static_cast<double>(10 + choices_.next(170)),
-                                              .speed_rpm = static_cast<double>(5 + choices_.next(26)),
-                                              .torque_nm = push,
-                                              .hold = between(0, 1000)});
+    case Trouble::kHand: {
+      const sim::Hand turn{.by_deg = sign * static_cast<double>(10 + choices_.next(170)),
+                           .speed_rpm = static_cast<double>(5 + choices_.next(26)),
+                           .torque_nm = push,
+                           .hold = between(0, 1000)};
+      for (const auto motor : oneThing(player.motor))
+        busOf(players_[motor]).turnByHand(players_[motor].drive, turn);
       break;
+    }
     case Trouble::kSlope: {
       const auto time = between(5000, 30'000);
       for (std::size_t wheel = 0; wheel < 4; ++wheel) load(players_[wheel], sign * push * 0.3, time);
@@ -379,7 +394,7 @@ void Match::drive() {
   const auto now = robot_.now();
   if (now < next_drive_) return;
   next_drive_ = now + 20ms;
-  if (phase_ != Phase::kPlay || now < silent_until_) return;
+  if (phase_ != Phase::kPlay || now < silent_until_ || lets_all_stand_) return;
   const auto& state = robot_.snapshot();
   Command command;
   command.client = link::Name{"program"};
@@ -457,6 +472,10 @@ void Match::judge() {
       ++wanted_ticks_;
       active_ticks_ += active ? 1 : 0;
     }
+    if (phase_ == Phase::kPlay && active && now >= silent_until_) {
+      ++player.asked_ticks;
+      player.followed_ticks += motor.acting == Acting::kTarget ? 1 : 0;
+    }
   }
 }
 
@@ -467,6 +486,17 @@ std::uint64_t Match::times(const std::string& what) const {
 
 double Match::activeShare() const noexcept {
   return wanted_ticks_ == 0 ? 0.0 : static_cast<double>(active_ticks_) / static_cast<double>(wanted_ticks_);
+}
+
+std::string Match::idlers(double least_share) const {
+  std::string out;
+  for (const auto& player : players_) {
+    const double share = player.asked_ticks == 0 ? 0.0
+                                                 : static_cast<double>(player.followed_ticks) /
+                                                       static_cast<double>(player.asked_ticks);
+    if (share < least_share) out += fmt::format(" {} {:.0f} %,", kRoles.at(player.motor).name, 100.0 * share);
+  }
+  return out;
 }
 
 std::string Match::text() const {

@@ -30,7 +30,12 @@ class Match {
   [[nodiscard]] std::uint64_t times(const std::string& what) const;
   /// Ticks of motors that were ACTIVE, and of those that were to be.
   [[nodiscard]] double activeShare() const noexcept;
+  /// The motors that followed their targets for less than this share of the time in which they were ACTIVE
+  /// and commanded, or were never both.
+  [[nodiscard]] std::string idlers(double least_share) const;
 
+  /// For tests of the judge: no command arrives from now on, and the judge is not told.
+  void sendNothing() { lets_all_stand_ = true; }
   /// For tests of the judge: this motor is unplugged, and the judge is not told.
   void unplugUnnoticed(std::size_t motor);
   /// For its tests: this motor is unplugged, and meanwhile a hand leads it to the opposite of its zero.
@@ -73,6 +78,8 @@ class Match {
         excused_until{};  ///< It may stop, and be OFFLINE: its plug, or that of one it is grouped with.
     bool was_active = false;
     bool faulted = false;
+    std::uint64_t asked_ticks = 0;     ///< ACTIVE, with commands that have come.
+    std::uint64_t followed_ticks = 0;  ///< And those of them in which a target acted on it.
   };
 
   void begin(Trouble trouble);
@@ -89,6 +96,7 @@ class Match {
   void judge();
   void nuisance(const std::string& what);
   [[nodiscard]] Player& somebody();
+  [[nodiscard]] std::vector<std::size_t> oneThing(std::size_t motor) const;
   [[nodiscard]] Duration between(int least_ms, int most_ms);
   [[nodiscard]] sim::SimBus& busOf(const Player& player) { return robot_.simBus(player.bus); }
   void note(const char* what) { ++counts_[what]; }
@@ -108,6 +116,7 @@ class Match {
   MonotonicTime phase_ends_{};
   MonotonicTime ask_again_{};
   MonotonicTime all_well_{};  ///< Everything is plugged in, and the operator has asked, since.
+  bool lets_all_stand_ = false;
   Phase phase_ = Phase::kPit;
   std::uint64_t orders_ = 0;
   std::uint64_t tick_ = 0;

@@ -16,6 +16,10 @@ using namespace rc10::test;
 // Longest list of stops that is shown.
 constexpr std::size_t kMostShown = 10;
 
+// Share of the time in which a motor that is ACTIVE and commanded follows its target: after a gap of the
+// programs it waits for the next command.
+constexpr double kLeastFollowed = 0.8;
+
 struct Outcome {
   std::uint64_t seed = 0;
   std::string text;
@@ -29,6 +33,8 @@ void play(Duration robot_time, Outcome& out) {
     while (match.robotTime() < robot_time) match.tick();
     out.nuisances = match.nuisances();
     out.text = match.text();
+    if (const auto idlers = match.idlers(kLeastFollowed); !idlers.empty())
+      out.nuisances.push_back("asked to, and did not follow their targets for most of the time:" + idlers);
   } catch (const std::exception& problem) {
     out.nuisances = {problem.what()};
   }

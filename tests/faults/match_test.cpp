@@ -17,6 +17,7 @@ TEST(MatchTest, ASoundRobotPlaysWithoutAStopThatNobodyAskedFor) {
   EXPECT_EQ(match.times("match"), 1U);
   EXPECT_GT(match.times("shove"), 0U);
   EXPECT_GT(match.activeShare(), 0.3);
+  EXPECT_EQ(match.idlers(0.8), "");
 }
 
 TEST(MatchTest, TheJudgeSeesAStopThatNobodyAskedFor) {
@@ -30,6 +31,16 @@ TEST(MatchTest, TheJudgeSeesAStopThatNobodyAskedFor) {
   ASSERT_EQ(match.nuisances().size(), 1U);
   EXPECT_NE(match.nuisances().front().find("belt is OFFLINE: silence"), std::string::npos)
       << match.nuisances().front();
+}
+
+TEST(MatchTest, TheJudgeSeesMotorsThatStandThoughTheyAreCommanded) {
+  SeededChoices choices{7};
+  Match match{choices};
+  match.sendNothing();
+  while (match.robotTime() < 10s) match.tick();
+  EXPECT_TRUE(match.nuisances().empty()) << match.nuisances().front();
+  EXPECT_NE(match.idlers(0.8).find("front_left 0 %"), std::string::npos) << match.idlers(0.8);
+  EXPECT_NE(match.idlers(0.8).find("leg_right 0 %"), std::string::npos) << match.idlers(0.8);
 }
 
 TEST(MatchTest, APersonTurnsBackAShaftThatAHandHasLedOutOfItsTravel) {

@@ -46,7 +46,9 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
                                                                            : traits.effort_full_scale);
       motor.host_holds = traits.frames.hold == Provision::kHostLoop;
       motor.host_brakes = traits.frames.brake == Provision::kHostLoop;
-      motor.visits = &visits_.motors[fmt::format("{} {}", entry.family->name(), entry.name())];
+      motor.visits =
+          &visits_.motors[fmt::format("{} {} of {}", entry.family->name(), entry.name(), config_.robot)];
+      motor.visits->supported = traits.modes;
       motors_.push_back(std::move(motor));
     }
   }
@@ -510,6 +512,7 @@ void Oracle::count(const Snapshot& snapshot) {
     ++visits_.status[static_cast<std::size_t>(seen.status)];
     auto& kind = *motor.visits;
     if (seen.status == MotorStatus::kActive) ++kind.active;
+    ++kind.modes[static_cast<std::size_t>(seen.target.mode)];
     if (motor.told.rests()) continue;
     ++kind.laws[static_cast<std::size_t>(motor.told.law)];
     if (seen.target.mode != ControlMode::kCoast) ++visits_.driven;

@@ -28,6 +28,9 @@ inline constexpr Duration kLongestFallback = std::chrono::seconds{1};
   return status == MotorStatus::kOffline || status == MotorStatus::kFault;
 }
 
+/// This fallback of the motor is a loop of rc10d, which may give nothing where nothing is to be opposed.
+[[nodiscard]] bool ofHost(const MotorConfig& config, FallbackAction action);
+
 /// Judges every tick by what was sent to the robot and what came out on its buses. Knows the configuration
 /// and the documents, and nothing of the supervisor's code; of the snapshot it trusts nothing that the
 /// frames could contradict.
@@ -247,6 +250,7 @@ class Oracle {
   void followActions(std::size_t index, const MotorSnapshot& seen);
   void judgeCommand(std::size_t index, const MotorSnapshot& seen);
   void judgeFallback(std::size_t index);
+  void judgeLettingGo(std::size_t index, Actions actions);
   void judgeBrake(std::size_t index, Actions actions);
   void judgeLimits(std::size_t index);
   void judgeTold(std::size_t index, const MotorSnapshot& seen);
@@ -270,6 +274,7 @@ class Oracle {
   [[nodiscard]] bool isBounded(const Motor& motor, const MotorSnapshot& seen) const;
   void judgeSoftLimits(std::size_t index, const MotorSnapshot& seen);
   void judgeReduced(std::size_t index, const MotorSnapshot& seen);
+  void judgeReducedEffort(std::size_t index);
   void judgeStop(std::bitset<kMaxBuses> read, bool stopped);
   void judgeAnswers();
   void count(const Snapshot& snapshot);

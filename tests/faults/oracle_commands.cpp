@@ -58,6 +58,13 @@ constexpr double kAngleSlackDeg = 1.0;
 
 }  // namespace
 
+bool ofHost(const MotorConfig& config, FallbackAction action) {
+  const auto& frames = config.traits().frames;
+  // A ramp is a velocity: in the loop that brakes, too.
+  const auto kind = action == FallbackAction::kRamp ? FrameKind::kBrake : frameKindOf(action);
+  return frames.of(kind) == Provision::kHostLoop;
+}
+
 // It gets frames in its turn only, of ticks in which its bus carries frames.
 bool Oracle::mayLag(const Motor& motor, std::uint64_t ticks) {
   const auto lag_ticks = static_cast<std::uint64_t>(motor.config->settings.command_divider);
@@ -266,10 +273,24 @@ void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   require(index,
           !by_speed || std::fabs(told.velocity_rpm) <= most_rpm + told.velocity_step_rpm + 1e-4 * most_rpm,
           "told more than its reduced speed");
-  const double most = motor.limit * static_cast<double>(reduced.effort_share);
+  judgeReducedEffort(index);
+}
+
+// In every field that can move the shaft, as judgeLimits() has it for the whole limit.
+void Oracle::judgeReducedEffort(std::size_t index) {
+  const auto& motor = motors_[index];
+  const auto& told = motor.told;
+  if (motor.config->reduced.effort_share >= 1.0F) return;
+  const double most = motor.limit * static_cast<double>(motor.config->reduced.effort_share);
+  const double slack = told.effort_step + 1e-4 * motor.limit;
   const bool by_effort = told.law == Told::Law::kEffort;
-  require(index, !by_effort || std::fabs(told.effort) <= most + told.effort_step + 1e-4 * motor.limit,
-          "told more than its reduced effort");
+  const bool by_sum = told.law == Told::Law::kSpring && std::isfinite(told.sum);
+  const bool bounded = std::isfinite(told.most_effort);
+  if (by_effort || by_sum || bounded) ++visits_.reduced_efforts;
+  require(index, !by_effort || std::fabs(told.effort) <= most + slack, "told more than its reduced effort");
+  require(index, !by_sum || std::fabs(told.sum) <= most + told.sum_step + slack,
+          "told a sum of more than its reduced effort");
+  require(index, !bounded || told.most_effort <= most + slack, "told a bound beyond its reduced effort");
 }
 
 // A field beside a speed, a place or a spring moves the shaft, too.
@@ -355,7 +376,21 @@ void Oracle::judgeFallback(std::size_t index) {
   }
   if (!any && !mayLag(motor, tick_ - motor.acts_since_tick + 1))
     fail(index, "nobody commands it, and its command is not that of its fallback:" + words);
+  judgeLettingGo(index, actions);
   judgeBrake(index, actions);
+}
+
+// Rest fits everything that only resists; a motor that is to hold, brake, damp or ramp is not let go for
+// that. A loop of rc10d, and a damping that is an effort, give none where there is nothing to oppose.
+void Oracle::judgeLettingGo(std::size_t index, Actions actions) {
+  auto& motor = motors_[index];
+  const bool one = actions.count() == 1 && actions != only(FallbackAction::kCoast);
+  const bool lags = mayLag(motor, tick_ - motor.acts_since_tick + 1);
+  if (!one || motor.ends_at_standstill || motor.was_hot || !fresh(motor) || lags) return;
+  for (std::size_t i = 0; i < actions.size(); ++i)
+    if (actions.test(i) && ofHost(*motor.config, static_cast<FallbackAction>(i))) return;
+  ++visits_.kept;
+  require(index, !motor.told.rests(), "its fallback lets go");
 }
 
 // A loop of rc10d that brakes opposes a fast motor before long.

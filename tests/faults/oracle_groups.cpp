@@ -141,7 +141,9 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
       state_ == RobotStatus::kRun || (state_ == RobotStatus::kStopping && !estop_in_force_);
   if (estop_asked_ && gives_way && motor.actions != coast) {
     auto actions = only(fallback.on_estop);
-    const bool may_have_ended = motor.ends_at_standstill || (motor.actions & coast).any();
+    const bool ramp_over = motor.actions.test(static_cast<std::size_t>(FallbackAction::kRamp)) &&
+                           now_ - motor.acts_since >= fallback.ramp;
+    const bool may_have_ended = motor.ends_at_standstill || ramp_over || (motor.actions & coast).any();
     if (may_have_ended || motor.disables_asked > 0 || motor.enable_asked || motor.coast_asked)
       actions |= coast;
     if (motor.disables_asked > 0 || motor.enable_asked) actions |= motor.actions | only(fallback.on_disable);

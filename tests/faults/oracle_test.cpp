@@ -64,10 +64,6 @@ class OracleSees : public ::testing::TestWithParam<Case> {
   }
 };
 
-TEST_P(OracleSees, AMotorBeyondItsLimits) {
-  EXPECT_THAT(findingOf(Kind::kLimits), ::testing::HasSubstr("limit"));
-}
-
 TEST_P(OracleSees, AMotorThatGoesOnThoughNobodyCommandsIt) {
   // It may see that by the rule of rest, of slew limits, or by what the robot says of its own frames.
   EXPECT_THAT(findingOf(Kind::kStuck), ::testing::HasSubstr(", motor " + GetParam().motor_name + " ("));
@@ -99,11 +95,12 @@ TEST(OracleSeesOfAGimbal, ThatItHoldsForNobody) {
 
 constexpr std::size_t kRobotWithSlewLimits = 5;
 
-TEST(OracleSeesOfATarget, ThatItChangesFasterThanItsSlewLimit) {
-  for (const std::size_t motor : {0U, 1U, 2U, 3U, 4U, 6U})
-    EXPECT_THAT(findingOf({.robot = kRobotWithSlewLimits, .motor = motor, .kind = Kind::kSlew}),
-                ::testing::AnyOf(::testing::HasSubstr("leaps to"), ::testing::HasSubstr("changes too fast")))
-        << motor;
+/// The motors of the soak that have such a limit.
+class OracleSeesASlew : public OracleSees {};
+
+TEST_P(OracleSeesASlew, ThatIsFaster) {
+  EXPECT_THAT(findingOf(Kind::kSlew),
+              ::testing::AnyOf(::testing::HasSubstr("leaps to"), ::testing::HasSubstr("changes too fast")));
 }
 
 TEST(OracleSeesOfATarget, ThatItComesIntoForceFasterThanItsSoftStart) {
@@ -111,6 +108,33 @@ TEST(OracleSeesOfATarget, ThatItComesIntoForceFasterThanItsSoftStart) {
     EXPECT_THAT(findingOf({.robot = kRobotWithSlewLimits, .motor = motor, .kind = Kind::kSoftStart}),
                 ::testing::HasSubstr("of its soft start"))
         << motor;
+}
+
+/// The motors whose frames tell an effort, or its bound.
+class OracleSeesAnEffort : public OracleSees {};
+
+TEST_P(OracleSeesAnEffort, BeyondItsLimit) {
+  EXPECT_THAT(findingOf(Kind::kEffort), ::testing::HasSubstr("beyond its limit"));
+}
+
+/// The motors whose frames tell a speed, or its bound.
+class OracleSeesASpeed : public OracleSees {};
+
+TEST_P(OracleSeesASpeed, BeyondItsLimit) {
+  EXPECT_THAT(findingOf(Kind::kSpeed), ::testing::HasSubstr("beyond its velocity limit"));
+}
+
+/// The motors whose drive does what their `on_timeout` says, and would rest without it.
+class OracleSeesAFallback : public OracleSees {};
+
+TEST_P(OracleSeesAFallback, ThatLetsGo) {
+  EXPECT_THAT(findingOf(Kind::kFallback), ::testing::HasSubstr("its fallback lets go"));
+}
+
+class OracleSeesAReducedEffort : public OracleSees {};
+
+TEST_P(OracleSeesAReducedEffort, ThatIsMore) {
+  EXPECT_THAT(findingOf(Kind::kReducedEffort), ::testing::HasSubstr("reduced effort"));
 }
 
 /// The motors of the soak that have such a bound.
@@ -147,9 +171,52 @@ TEST(OracleSeesOfAGroup, ThatAMemberGoesOnWithoutTheOthers) {
               ::testing::HasSubstr("group"));
 }
 
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesASlew,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           const auto& shaping = motor.shaping;
+                           return shaping.velocity_slew_rpm_per_s > 0.0F ||
+                                  shaping.angle_slew_deg_per_s > 0.0F || shaping.effort_slew_per_s > 0.0F;
+                         })),
+                         [](const auto& param) { return param.param.name; });
+
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAReducedMotor,
                          ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
                            return motor.reduced.velocity_rpm > 0.0F;
+                         })),
+                         [](const auto& param) { return param.param.name; });
+
+/// A Damiao drive in `control: velocity` is told a speed alone.
+bool isToldAnEffort(const MotorConfig& motor) {
+  const auto modes = motor.traits().modes;
+  return modes.contains(ControlMode::kCurrent) || modes.contains(ControlMode::kVoltage) ||
+         motor.family->name() != "Damiao" || modes.contains(ControlMode::kTotalAngle);
+}
+
+/// The loops of rc10d tell currents alone, and so do drives that follow nothing else.
+bool isToldASpeed(const MotorConfig& motor) {
+  const auto modes = motor.traits().modes;
+  const bool follows = modes.contains(ControlMode::kVelocity) || modes.contains(ControlMode::kTotalAngle);
+  return follows && motor.family->name() != "DJI" && motor.settings.velocity_limit_rpm > 0.0F;
+}
+
+/// A drive of this motor does what its `on_timeout` says, and is at rest while nothing is asked of it.
+bool keepsByItself(const MotorConfig& motor) {
+  const auto action = motor.fallback.on_timeout;
+  return action != FallbackAction::kCoast && !ofHost(motor, action) && makeWire(motor)->idlesAtRest();
+}
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAnEffort, ::testing::ValuesIn(motorsWith(isToldAnEffort)),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesASpeed, ::testing::ValuesIn(motorsWith(isToldASpeed)),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAFallback, ::testing::ValuesIn(motorsWith(keepsByItself)),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAReducedEffort,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           return motor.reduced.effort_share < 1.0F;
                          })),
                          [](const auto& param) { return param.param.name; });
 

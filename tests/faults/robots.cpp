@@ -44,6 +44,7 @@ buses:
     type: sim
     motors:
       - {name: shoulder, model: DM4310, id: 1, master_id: 17, current_limit_a: 4, velocity_limit_rpm: 100,
+         reduced_current_a: 2, reduced_within_ms: 200,
          on_timeout: hold, on_disable: damp, on_estop: brake, hold_max_s: 0.5,
          angle_min_deg: -90, angle_max_deg: 90, zero: power_on}
       - {name: wheel, model: DMH6215, id: 3, master_id: 19, control: velocity, velocity_limit_rpm: 120, direction: -1,
@@ -55,11 +56,11 @@ buses:
       - {name: elbow, model: DM4340, id: 2, master_id: 18, control: position_velocity, velocity_limit_rpm: 30,
          on_timeout: hold, on_disable: hold, on_estop: hold}
       - {name: gripper, model: DM4310, id: 4, master_id: 20, control: force_position, velocity_limit_rpm: 60,
-         current_limit_a: 2, on_timeout: hold, on_estop: brake}
+         current_limit_a: 2, reduced_current_a: 1, reduced_within_ms: 200, on_timeout: hold, on_estop: brake}
   - name: knees
     type: sim
     motors:
-      - {name: knee, model: RS00, id: 20, reduced_velocity_rpm: 25, reduced_within_ms: 200,
+      - {name: knee, model: RS00, id: 20, reduced_velocity_rpm: 25, reduced_within_ms: 200, reduced_current_a: 3,
          current_limit_a: 6, velocity_limit_rpm: 100, on_timeout: hold, on_disable: damp,
          on_estop: damp, hold_max_s: 1, current_slew_a_per_s: 50}
       - {name: lift, model: RS03, id: 21, control: position, current_limit_a: 10, velocity_limit_rpm: 60, direction: -1,
@@ -68,8 +69,9 @@ buses:
     type: sim
     motors:
       - {name: ankle, model: AK80-9, id: 31, protocol: mit, current_limit_a: 6, velocity_limit_rpm: 80, on_timeout: damp,
+         reduced_current_a: 3, reduced_within_ms: 200,
          on_disable: brake, on_estop: hold, hold_max_s: 0.5, angle_min_deg: -120, angle_max_deg: 120, zero: power_on}
-      - {name: hip, model: AK80-9, id: 32, reduced_velocity_rpm: 20, reduced_within_ms: 200,
+      - {name: hip, model: AK80-9, id: 32, reduced_velocity_rpm: 20, reduced_within_ms: 200, reduced_current_a: 4,
          current_limit_a: 8, velocity_limit_rpm: 80, on_timeout: brake,
          on_disable: damp, on_estop: ramp, ramp_s: 0.5, current_slew_a_per_s: 40}
 groups:
@@ -81,7 +83,7 @@ buses:
   - name: belts
     type: sim
     motors:
-      - {name: belt, model: ODrive_S1, id: 3, reduced_velocity_rpm: 60, reduced_within_ms: 200,
+      - {name: belt, model: ODrive_S1, id: 3, reduced_velocity_rpm: 60, reduced_within_ms: 200, reduced_current_a: 10,
          torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
          velocity_limit_rpm: 600, on_timeout: brake, on_disable: ramp, on_estop: brake, feedback_hz: 200}
       - {name: winch, model: ODrive_v3, id: 4, torque_constant_nm_per_a: 0.04, current_limit_a: 15,
@@ -91,7 +93,7 @@ buses:
     type: sim
     motors:
       - {name: shooter, model: VESC, id: 10, pole_pairs: 7, motor_current_max_a: 40, current_limit_a: 30,
-         reduced_velocity_rpm: 300, reduced_within_ms: 200,
+         reduced_velocity_rpm: 300, reduced_within_ms: 200, reduced_current_a: 15,
          velocity_limit_rpm: 3000, kv_rpm_per_v: 190, on_timeout: damp, on_disable: brake, on_estop: ramp,
          feedback_hz: 200, current_slew_a_per_s: 200}
       - {name: steer, model: VESC, id: 11, pole_pairs: 7, motor_current_max_a: 20, current_limit_a: 10, gear_ratio: 10,
@@ -101,7 +103,7 @@ buses:
     type: sim
     data_bitrate: 5000000
     motors:
-      - {name: calf, model: moteus, id: 1, reduced_velocity_rpm: 30, reduced_within_ms: 200,
+      - {name: calf, model: moteus, id: 1, reduced_velocity_rpm: 30, reduced_within_ms: 200, reduced_current_a: 5,
          motor_kv_rpm_per_v: 100, current_limit_a: 10, velocity_limit_rpm: 300,
          on_timeout: hold, on_disable: ramp, on_estop: damp, hold_max_s: 0.5, current_slew_a_per_s: 50}
       - {name: thigh, model: moteus, id: 2, motor_kv_rpm_per_v: 100, current_limit_a: 15, velocity_limit_rpm: 200,
@@ -121,7 +123,7 @@ buses:
   - name: pans
     type: sim
     motors:
-      - {name: pan, model: LK-MG5010E-i10, id: 5, reduced_velocity_rpm: 20, reduced_within_ms: 200,
+      - {name: pan, model: LK-MG5010E-i10, id: 5, reduced_velocity_rpm: 20, reduced_within_ms: 200, reduced_current_a: 2,
          velocity_limit_rpm: 100, current_limit_a: 5, on_timeout: ramp,
          ramp_s: 0.3, on_disable: brake, on_estop: brake, zero_deg: 30, angle_min_deg: -150, angle_max_deg: 150}
       - {name: tilt, model: LK-MG5010E-i10, id: 6, velocity_limit_rpm: 100, on_timeout: hold, on_estop: hold,
@@ -129,7 +131,7 @@ buses:
   - name: tables
     type: sim
     motors:
-      - {name: turntable, model: RMD-X8-20, id: 22, reduced_velocity_rpm: 15, reduced_within_ms: 200,
+      - {name: turntable, model: RMD-X8-20, id: 22, reduced_velocity_rpm: 15, reduced_within_ms: 200, reduced_current_a: 3,
          current_limit_a: 6, velocity_limit_rpm: 60, on_timeout: damp,
          on_disable: brake, on_estop: brake, current_slew_a_per_s: 40, command_divider: 2}
       - {name: shoulder, model: RMD-X8-25, id: 23, velocity_limit_rpm: 40, direction: -1, on_timeout: hold,
@@ -145,7 +147,7 @@ buses:
     type: sim
     motors:
       - {name: front_left, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
-         id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
+         id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake, stall_ms: 100}
       - {name: front_right, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
          id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
       - {name: rear_left, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
@@ -155,7 +157,7 @@ buses:
   - name: top
     type: sim
     motors:
-      - {name: feeder, model: M2006, id: 1, current_limit_a: 5, on_timeout: brake}
+      - {name: feeder, model: M2006, id: 1, current_limit_a: 5, on_timeout: brake, stall_ms: 100}
       - {name: arm, model: M3508, id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: damp,
          reduced_velocity_rpm: 30, reduced_within_ms: 200, angle_min_deg: 0, angle_max_deg: 150,
          current_slew_a_per_s: 20, simulated: {stop_min_deg: -60, stop_max_deg: 110, gravity_nm: 0.3}}
@@ -328,17 +330,21 @@ buses:
   - name: chassis
     type: sim
     motors:
-      - {name: front_left, model: M3508, id: 1, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: front_right, model: M3508, id: 2, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: rear_left, model: M3508, id: 3, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: rear_right, model: M3508, id: 4, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on}
-      - {name: loader, model: M2006, id: 5, current_limit_a: 5, zero: power_on}
+      - {name: front_left, model: M3508, id: 1, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on,
+         stall_ms: 500}
+      - {name: front_right, model: M3508, id: 2, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on,
+         stall_ms: 500}
+      - {name: rear_left, model: M3508, id: 3, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on,
+         stall_ms: 500}
+      - {name: rear_right, model: M3508, id: 4, on_timeout: damp, on_disable: damp, on_estop: brake, zero: power_on,
+         stall_ms: 500}
+      - {name: loader, model: M2006, id: 5, current_limit_a: 5, zero: power_on, stall_ms: 500}
   - name: turret
     type: sim
     motors:
-      - {name: yaw, model: GM6020, id: 5, on_timeout: hold, angle_slew_deg_per_s: 360,
+      - {name: yaw, model: GM6020, id: 5, on_timeout: hold, angle_slew_deg_per_s: 360, stall_ms: 500,
          following_error_deg: 45, angle_min_deg: -170, angle_max_deg: 170, temperature_derate_c: 80}
-      - {name: pitch, model: GM6020, id: 6, on_timeout: hold, angle_min_deg: -30, angle_max_deg: 40,
+      - {name: pitch, model: GM6020, id: 6, on_timeout: hold, angle_min_deg: -30, angle_max_deg: 40, stall_ms: 500,
          simulated: {gravity_nm: 0.3, hangs_at_deg: -90}}
       - {name: flywheel_left, model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, command_divider: 10,
          on_estop: brake, on_disable: brake}
@@ -351,21 +357,23 @@ buses:
     motors:
       - {name: shoulder, model: DM4340, id: 1, master_id: 17, on_timeout: hold, on_estop: damp,
          on_disable: damp, command_divider: 5, angle_min_deg: -100, angle_max_deg: 100, following_error_deg: 45,
-         angle_slew_deg_per_s: 200, simulated: {gravity_nm: 3}}
-      - {name: elbow, model: DM4310, id: 2, master_id: 18, on_timeout: hold, on_estop: damp,
+         angle_slew_deg_per_s: 200, stall_ms: 500, simulated: {gravity_nm: 3}}
+      - {name: elbow, model: DM4310, id: 2, master_id: 18, on_timeout: hold, on_estop: damp, stall_ms: 500,
          on_disable: damp, command_divider: 5, simulated: {gravity_nm: 1}}
-      - {name: wrist, model: RS00, id: 20, on_timeout: hold, command_divider: 10}
-      - {name: finger, model: AK80-9, protocol: mit, id: 21, on_timeout: hold, command_divider: 10}
-      - {name: lift_left, model: RMD-X8-20, id: 22, command_divider: 10, on_timeout: hold}
-      - {name: lift_right, model: RMD-X8-20, id: 23, command_divider: 10, on_timeout: hold}
-      - {name: pan, model: LK-MG5010E-i10, id: 5, command_divider: 10, on_timeout: hold}
+      - {name: wrist, model: RS00, id: 20, on_timeout: hold, command_divider: 10, stall_ms: 500}
+      - {name: finger, model: AK80-9, protocol: mit, id: 21, on_timeout: hold, command_divider: 10, stall_ms: 500,
+         zero: power_on}
+      - {name: lift_left, model: RMD-X8-20, id: 22, command_divider: 10, on_timeout: hold, zero: power_on}
+      - {name: lift_right, model: RMD-X8-20, id: 23, command_divider: 10, on_timeout: hold, zero: power_on}
+      - {name: pan, model: LK-MG5010E-i10, id: 5, command_divider: 10, on_timeout: hold, stall_ms: 500}
   - name: legs
     type: sim
     data_bitrate: 5000000
     motors:
-      - {name: leg_left, model: moteus, id: 1, motor_kv_rpm_per_v: 100, command_divider: 2, on_timeout: hold}
+      - {name: leg_left, model: moteus, id: 1, motor_kv_rpm_per_v: 100, command_divider: 2, on_timeout: hold,
+         stall_ms: 500}
       - {name: leg_right, model: moteus, id: 2, motor_kv_rpm_per_v: 100, command_divider: 2, direction: -1,
-         on_timeout: hold}
+         on_timeout: hold, stall_ms: 500}
 groups:
   - {name: reach, motors: [shoulder, elbow], on_member_offline: stop_group}
 )";

@@ -32,6 +32,8 @@ void Visits::add(const Visits& other) {
   sum(slewed_fields, other.slewed_fields);
   sum(softened, other.softened);
   reduced += other.reduced;
+  reduced_efforts += other.reduced_efforts;
+  kept += other.kept;
   held_for_nobody += other.held_for_nobody;
   homing += other.homing;
   homed += other.homed;
@@ -45,6 +47,8 @@ void Visits::add(const Visits& other) {
   for (const auto& [name, visited] : other.motors) {
     motors[name].active += visited.active;
     sum(motors[name].laws, visited.laws);
+    sum(motors[name].modes, visited.modes);
+    motors[name].supported = visited.supported;
   }
   sum(robot, other.robot);
   sum(status, other.status);
@@ -74,10 +78,16 @@ std::string Visits::text() const {
     out += fmt::format("\n{}, thousand ticks: ACTIVE {}, told", name, visited.active / 1000);
     for (std::size_t law = 1; law < visited.laws.size(); ++law)
       out += fmt::format(" {} {}", wordOf(static_cast<Told::Law>(law)), visited.laws[law] / 1000);
+    out += "; asked for";
+    for (std::size_t mode = 1; mode < visited.modes.size(); ++mode)
+      if (visited.supported.contains(static_cast<ControlMode>(mode)))
+        out += fmt::format(" {} {}", toString(static_cast<ControlMode>(mode)), visited.modes[mode] / 1000);
   }
   out += fmt::format("\nof modules, thousand ticks: {}", by_modules / 1000);
-  out += fmt::format("\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}, homing {}", slewed,
-                     bounded, reduced, homing);
+  out += fmt::format(
+      "\njudged, ticks: slew limits {}, soft limits {}, reduced mode {}, reduced efforts {}, "
+      "fallbacks that keep a motor {}, homing {}",
+      slewed, bounded, reduced, reduced_efforts, kept, homing);
   out +=
       fmt::format("\nslew limits of speeds {}, places {}, velocity feed-forwards {}, torque feed-forwards {}",
                   slewed_fields[1], slewed_fields[2], slewed_fields[3], slewed_fields[4]);
@@ -96,17 +106,85 @@ std::string Visits::text() const {
   return out;
 }
 
-std::string Visits::idle() const {
+namespace {
+
+using Counts = std::vector<std::pair<std::string, std::uint64_t>>;
+
+[[nodiscard]] std::string zerosOf(const Counts& counts) {
   std::string out;
+  for (const auto& [name, count] : counts)
+    if (count == 0) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+// Faults that the chaos provokes several times in an hour.
+constexpr std::array kProvoked{FaultCode::kOverspeed, FaultCode::kOverheated,        FaultCode::kEncoderJump,
+                               FaultCode::kRunaway,   FaultCode::kForeignCommands,   FaultCode::kReducedSpeed,
+                               FaultCode::kNotAtRest, FaultCode::kDriveCommunication};
+
+}  // namespace
+
+std::string Visits::idle() const {
+  Counts counts{{"slew limits", slewed},
+                {"soft limits", bounded},
+                {"zeros", zeros},
+                {"reduced mode", reduced},
+                {"fallbacks that keep a motor", kept},
+                {"targets", driven},
+                {"modules", by_modules},
+                {"stalled buses", stalls},
+                {"probes", probes},
+                {"scans", scans}};
+  return zerosOf(counts);
+}
+
+std::string Visits::idleInAnHour() const {
+  Counts counts{{"a motor enabled alone", alone},
+                {"a group enabled again", rearmed},
+                {"orderly ends", stops},
+                {"first angles", first_angles},
+                {"turns at power-up", turns},
+                {"reduced efforts", reduced_efforts},
+                {"a held direction", held_for_nobody},
+                {"homing", homing},
+                {"a homing that found its end", homed},
+                {"a scan made to its end", scanned},
+                {"a refused scan", scans_refused},
+                {"questions of scans", questions},
+                {"pauses", unread_after_pauses}};
+  // The first of both is judged by rules of its own: an effort, in every frame.
+  constexpr std::array kFields{"efforts", "speeds", "places", "velocity feed-forwards",
+                               "torque feed-forwards"};
+  for (std::size_t field = 0; field < kFields.size(); ++field) {
+    if (field > 0) counts.emplace_back(std::string{"slew limits of "} + kFields[field], slewed_fields[field]);
+    counts.emplace_back(std::string{"soft starts of "} + kFields[field], softened[field]);
+  }
+  for (std::size_t action = 1; action < fallbacks.size(); ++action)
+    counts.emplace_back(wordOf(static_cast<FallbackAction>(action)), fallbacks[action]);
+  for (const auto code : kProvoked)
+    counts.emplace_back(link::faultText(static_cast<std::int32_t>(code)),
+                        faults[static_cast<std::size_t>(code)]);
   for (const auto& [name, visited] : motors) {
+    counts.emplace_back(name, visited.active);
     std::uint64_t told = 0;
     for (const auto count : visited.laws) told += count;
-    if (visited.active == 0 || told == 0) out += (out.empty() ? "" : ", ") + name;
+    counts.emplace_back(name + " in motion", told);
   }
-  if (scanned == 0) out += out.empty() ? "a scan" : ", a scan";
-  if (homed == 0) out += out.empty() ? "a homing" : ", a homing";
-  if (held_for_nobody == 0) out += out.empty() ? "a held direction" : ", a held direction";
-  return out;
+  // Some motors have no reference for most of the time: of modes that need one, each family's.
+  std::map<std::string, std::uint64_t> of_families;
+  for (const auto& [name, visited] : motors) {
+    for (int number = 1; number < kControlModeCount; ++number) {
+      const auto mode = static_cast<ControlMode>(number);
+      if (!visited.supported.contains(mode)) continue;
+      const auto followed = visited.modes[static_cast<std::size_t>(number)];
+      of_families[fmt::format("{} in {}", name.substr(0, name.find(' ')), toString(mode))] += followed;
+      if (!needsReference(mode)) counts.emplace_back(fmt::format("{} in {}", name, toString(mode)), followed);
+    }
+  }
+  counts.insert(counts.end(), of_families.begin(), of_families.end());
+  const std::string short_run = idle();
+  const std::string whole = zerosOf(counts);
+  return short_run.empty() || whole.empty() ? short_run + whole : short_run + ", " + whole;
 }
 
 }  // namespace rc10::test

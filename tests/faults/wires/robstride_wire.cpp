@@ -86,6 +86,7 @@ class RobstrideWire final : public Wire {
       default:
         told.law = Told::Law::kAngle;
         told.most_effort = current_limit_a_;
+        told.most_rpm = std::fabs(rpmOfRadPerS(velocity_limit_rad_s_));
         // A newer firmware's position goes round by two whole turns on each side, its reference does not.
         told.ahead_deg = degOfRad(std::remainder(position_ref_rad_ - seen_rad_, kRoundRad));
         told.ahead_turn_deg = std::fabs(degOfRad(kRoundRad));
@@ -124,8 +125,8 @@ class RobstrideWire final : public Wire {
         position_ref_rad_ = value;
         seen_rad_ = position_rad_;
         break;
-      case kTorqueLimit:
-      case kVelocityLimit: break;
+      case kVelocityLimit: velocity_limit_rad_s_ = value; break;
+      case kTorqueLimit: break;
       default:
         if (index != model_->watchdog_index) refuse(frame, "a parameter that rc10d has no business with");
     }
@@ -159,6 +160,7 @@ class RobstrideWire final : public Wire {
   double current_ref_a_ = 0.0;
   double velocity_ref_rad_s_ = 0.0;
   double position_ref_rad_ = 0.0;
+  double velocity_limit_rad_s_ = kUnsaid;
   double current_limit_a_ = 0.0;
   double position_rad_ = 0.0;
   double velocity_rad_s_ = 0.0;
