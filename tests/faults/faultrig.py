@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import bisect
 import contextlib
 import itertools
 import json
 import os
 import socket
+import struct
 import subprocess
 import sys
 import time
@@ -36,7 +38,11 @@ WIRE = "wire0"  # of the front drives, where cangw stands between
 # Names by bus and slot of the command frame, and the largest raw value that is configured.
 SLOTS = {FRONT: ("left", "right", "arm", None), REAR: ("other", None, None, None)}
 LIMIT_RAW = {"left": 8192, "right": 8192, "arm": 10000, "other": 16384}
-BRAKES = {"arm"}  # by their fallback; the others coast
+BRAKES = {"arm": 0x203}  # by their fallback, and the frame that tells their speed; the others coast
+# 5 % of the no-load speed of an M2006, of its rotor: beyond this a brake opposes the motion before
+# long. Its loop turns its effort round in that time.
+FAST_RPM = 0.05 * 500 * 36
+OPPOSES_WITHIN_NS = 50 * MS
 VALIDITY_MS = 40
 COMMAND_PERIOD_MS = 10
 
@@ -107,6 +113,7 @@ class Witness:
 
     dump: Candump
     allowed: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
+    speeds: dict[str, tuple[list[int], list[tuple[int, int] | None]]] = field(default_factory=dict)
 
     def driven(
         self, start_ns: int, end_ns: int, *names: str, validity_ms: int = VALIDITY_MS
@@ -133,6 +140,7 @@ class Witness:
 
     def check(self, *, other_bus: str | None = REAR) -> None:
         """The invariants of the campaign, over the whole log of the run."""
+        self.speeds.clear()
         for interface, names in SLOTS.items():
             for frame in self.frames(interface):
                 for name, value in zip(names, currents(frame), strict=True):
@@ -140,16 +148,51 @@ class Witness:
                         assert value == 0, f"an unused slot: {frame}"
                         continue
                     assert abs(value) <= LIMIT_RAW[name], f"{name} beyond its limit: {frame}"
-                    if value and name not in BRAKES:
-                        assert self._may_be_driven(name, frame.t_ns), (
-                            f"{name} without a lease: {frame}"
-                        )
+                    if not value or self._may_be_driven(name, frame.t_ns):
+                        continue
+                    assert name in BRAKES, f"{name} without a lease: {frame}"
+                    self._check_brake(name, value, frame)
         if other_bus is not None:
             times = [f.t_ns for f in self.frames(other_bus)]
             # As in tests/kernel/test_grid.py, once for each of two ticks.
             late = [b - a for a, b in itertools.pairwise(times) if abs(b - a - MS) > 8000]
             assert times, f"{other_bus} had no ticks"
             assert not late, f"{other_bus} missed ticks: {late[:5]}"
+
+    def _check_brake(self, name: str, value: int, frame: Frame) -> None:
+        """A fallback has something to brake once it was driven, and opposes a fast shaft."""
+        ended_ns = [end for _, end in self.allowed.get(name, ()) if end < frame.t_ns]
+        assert ended_ns, f"{name} before it was ever driven: {frame}"
+        fast = self._fast_since(name, frame.t_ns)
+        if fast is None:
+            return
+        since_ns, rpm = fast
+        late = frame.t_ns - max(since_ns, *ended_ns) > OPPOSES_WITHIN_NS
+        assert not late or value * rpm < 0, f"{name} is driven on at {rpm} rpm: {frame}"
+
+    def _fast_since(self, name: str, t_ns: int) -> tuple[int, int] | None:
+        """Since when its shaft turned fast one way without a break, as of then; and its speed."""
+        if name not in self.speeds:
+            self.speeds[name] = self._read_speeds(name)
+        times, states = self.speeds[name]
+        index = bisect.bisect_right(times, t_ns) - 1
+        return states[index] if index >= 0 else None
+
+    def _read_speeds(self, name: str) -> tuple[list[int], list[tuple[int, int] | None]]:
+        times: list[int] = []
+        states: list[tuple[int, int] | None] = []
+        for frame in self.dump.frames():
+            if frame.id != BRAKES[name] or frame.iface != FRONT or frame.error or frame.rtr:
+                continue
+            if len(frame.data) < 8:
+                continue
+            rpm = struct.unpack_from(">h", frame.data, 2)[0]
+            last = states[-1] if states else None
+            goes_on = last is not None and last[1] * rpm > 0
+            since_ns = last[0] if last is not None and goes_on else frame.t_ns
+            times.append(frame.t_ns)
+            states.append((since_ns, rpm) if abs(rpm) > FAST_RPM else None)
+        return times, states
 
     def _may_be_driven(self, name: str, t_ns: int) -> bool:
         return any(start <= t_ns <= end for start, end in self.allowed.get(name, ()))

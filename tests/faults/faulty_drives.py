@@ -43,6 +43,7 @@ class Fault(IntEnum):
     PUSHED = 10  # argument: hundredths of N m of a load from outside
     PARKED = 11  # argument: deg; switched off, turned there by hand, switched on 100 ms later
     WALL = 12  # argument: deg; the shaft turns no farther in the negative direction
+    LEAKY = 13  # argument: hundredths of A that it reports, and gives no torque for
 
 
 def fault(motor_id: int, kind: Fault, argument: int = 0) -> bytes:
@@ -60,6 +61,7 @@ class FaultyMotor(FakeMotor):
         self._last: can.Message | None = None
         self._off_s = 0.0
         self._hot_c = 0.0
+        self._leak_a = 0.0
         self._blocked = False
         self._wall_deg = -math.inf
 
@@ -70,6 +72,8 @@ class FaultyMotor(FakeMotor):
             self.slip_turns += argument / 1000
         elif kind is Fault.HOT:
             self._hot_c = float(argument)
+        elif kind is Fault.LEAKY:
+            self._leak_a = argument / 100
         elif kind is Fault.REBOOT:
             self._off_s = argument / 1000
             self._command_raw = 0
@@ -113,6 +117,10 @@ class FaultyMotor(FakeMotor):
             counts, rpm = -counts, -rpm
         counts = (counts + round(self.slip_turns * COUNTS)) % COUNTS
         struct.pack_into(">Hh", message.data, 0, counts, rpm)
+        if self.fault is Fault.LEAKY:
+            model = self.spec.model
+            raw = round(self._leak_a / model.current_scale_a * model.current_scale_raw)
+            struct.pack_into(">h", message.data, 4, raw)
         self._last = can.Message(
             arbitration_id=message.arbitration_id,
             is_extended_id=False,

@@ -44,7 +44,8 @@ LEFT, RIGHT, ARM = 1, 2, 3
 TOTAL_ANGLE = 4  # of command_t
 ACTIVE, READY = rc10.MotorStatus.ACTIVE, rc10.MotorStatus.READY
 OFFLINE, FAULT = rc10.MotorStatus.OFFLINE, rc10.MotorStatus.FAULT
-NOT_AT_REST, FOREIGN = 8, 9
+NOT_AT_REST, FOREIGN, STALLED = 8, 9, 3
+SETPOINT_SKIPPED = 103  # of EventCode
 ARM_KEYS = "on_timeout: brake, on_estop: brake}"
 
 
@@ -298,9 +299,10 @@ def test_an_estop_ends_as_it_should(tmp_path: Path) -> None:
                 _clear_by_lcm() if what == "clear" else _estop_by_datagram()
             time.sleep(0.3)
             assert robot.wait_for_state(1.0).estopped, order
+        # The same request alone is heard, and ends it: no message was lost.
+        _clear_by_lcm()
+        wait_for(lambda: not robot.wait_for_state(1.0).estopped, 1.0)
         nothing("e-stop and `clear` in one tick, in either order", "the e-stop wins")
-        robot.clear()
-        assert not robot.wait_for_state(1.0).estopped
         log.check()
 
 
@@ -430,11 +432,17 @@ def test_places_beyond_all_reach_are_refused() -> None:
         assert after_deg == pytest.approx(before_deg, abs=1)
         nothing("`zero` at 1e17 deg", "refused")
         robot.enable()
+        before = refusals(robot, "setpoint skipped")
+        robot.events()
         stranger = Stranger()
         for value in (1e17, -1e300):
             for _ in range(10):
                 stranger.command("left", TOTAL_ANGLE, value)
                 time.sleep(0.01)
+        wait_for(lambda: refusals(robot, "setpoint skipped") == before + 20, 5.0, "all are counted")
+        told = [event for event in robot.events() if event.code == SETPOINT_SKIPPED]
+        assert told
+        assert {event.source for event in told} == {"left"}
         assert log.last_torque_ns("left") == 0
         log.check()
         nothing("an angle target of 1e17 deg", "skipped, counted, told")
@@ -460,8 +468,38 @@ def test_the_end_of_a_program_is_a_timeout() -> None:
         nothing("`rc10ctl set ... --for` ends", "`on_timeout` holds the load")
 
 
+def refusals(robot: rc10.Robot, reason: str) -> int:
+    """As the diagnostics say, which come once a second."""
+    robot.wait_for_state(1.0)
+    with contextlib.suppress(rc10.NotReceived):
+        return int(dict(robot.diagnostics.refusals).get(reason, 0))
+    return 0
+
+
 def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
     with robot_under_test() as (_, robot, log):
+        # Almost what is torque at rest: 1 A (5 % of what an M3508 reports) for 100 ms.
+        robot.disable()
+        wait_for(has(robot, "left", READY), 2.0)
+        break_drive(LEFT, Fault.LEAKY, 90)
+        wait_for(lambda: robot.wait_for_state(1.0).motors["left"].current_a > 0.85, 2.0)
+        time.sleep(0.5)
+        for _ in range(3):
+            break_drive(LEFT, Fault.LEAKY, 150)
+            time.sleep(0.06)
+            break_drive(LEFT, Fault.NONE)
+            time.sleep(0.2)
+        assert robot.wait_for_state(1.0).motors["left"].status is READY
+        nothing("a current at rest below `rest_current_a`, or shorter than `rest_ms`", "no stop")
+        # As a control: it is one that is seen.
+        break_drive(LEFT, Fault.LEAKY, 150)
+        wait_for(has(robot, "left", FAULT), 2.0)
+        assert robot.motor("left").fault == NOT_AT_REST
+        break_drive(LEFT, Fault.NONE)
+        time.sleep(0.1)
+        robot.clear(["left"])
+        wait_for(has(robot, "left", READY), 2.0)
+        robot.enable()
         # Enabled without a target, then disabled: 1.5 N m at the output, to and fro.
         for status in (ACTIVE, READY):
             for torque in (150, -150, 150, 0):
@@ -474,6 +512,25 @@ def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
         assert not robot.wait_for_state(1.0).estopped
         log.check()
         nothing("a hand turns a motor that rests, enabled or not", "no stop")
+
+
+def test_a_short_block_is_no_stall(tmp_path: Path) -> None:
+    watched = {"id: 2, zero: power_on": "id: 2, stall_ms: 500, zero: power_on"}
+    with robot_with(tmp_path, watched) as (_, robot, log):
+        robot.enable()
+        moving = rc10.velocity_rpm(100)
+        drive(robot, log, 0.3, right=moving)
+        for _ in range(2):
+            break_drive(RIGHT, Fault.STALLED)
+            drive(robot, log, 0.35, right=moving)
+            break_drive(RIGHT, Fault.NONE)
+            drive(robot, log, 0.3, right=moving)
+        assert robot.wait_for_state(1.0).motors["right"].status is ACTIVE
+        nothing("blocked for 0.7 of `stall_ms`", "the motor goes on")
+        break_drive(RIGHT, Fault.STALLED)
+        drive(robot, log, 1.5, right=moving)
+        assert robot.motor("right").fault == STALLED
+        log.check()
 
 
 def test_a_first_angle_has_a_bound(tmp_path: Path) -> None:
