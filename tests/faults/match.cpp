@@ -293,13 +293,18 @@ void Match::order(Operation operation, MotorSet motors) {
   (void)robot_.exchange().orders.push(order);
 }
 
-// Angle references that a gap has cost are set again between two matches.
+// Angle references that a gap has cost are set again, as long as the motor rests; those of the lift together.
 void Match::reference() {
   const auto& state = robot_.snapshot();
   MotorSet lost;
   for (const auto& player : players_) {
-    if (needsReference(player.target.mode) && !state.motors[player.motor].feedback.zeroed)
-      lost.set(player.motor);
+    const auto both = oneThing(player.motor);
+    const auto& motor = state.motors[player.motor];
+    if (!needsReference(player.target.mode) && both.size() == 1) continue;
+    if (motor.feedback.zeroed || motor.status != MotorStatus::kReady) continue;
+    // One that knows its place is turned back into its travel.
+    if (config_.buses[player.bus].motors[player.drive].traits().absolute) continue;
+    for (const auto one : both) lost.set(one);
   }
   if (lost.none()) return;
   note("reference set");
@@ -366,6 +371,7 @@ void Match::operate() {
     all_well_ = now;
   }
   order(Operation::kClear);
+  reference();
   order(Operation::kEnable);
 }
 
