@@ -72,7 +72,7 @@ class JointHoming {
   void adapt(double missing, double gained, double pushed_a) noexcept;
   /// `direction`: of the current, 1: towards the end.
   [[nodiscard]] Standstill standstill(const Measured& measured, double direction) noexcept;
-  /// Of the homing, or as much of it as the reduced mode leaves.
+  /// Speed of the homing, or as much of it as the reduced mode leaves.
   [[nodiscard]] double velocityRpm(const Measured& measured) const noexcept;
   /// Way from `from_deg` to `to_deg`, positive towards the end.
   [[nodiscard]] double towards(double from_deg, double to_deg) const noexcept;

@@ -97,7 +97,7 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     settings.effort_limit *= 0.25F;
   }
   if (lie.kind == Lie::Kind::kSpeed) settings.velocity_limit_rpm *= 0.25F;
-  // Of a smaller limit it would be slower than it is.
+  // A smaller limit would make a soft start slower than it is.
   if (lie.kind == Lie::Kind::kEffort || lie.kind == Lie::Kind::kSpeed) motor.shaping.soft_start_s = 0.0F;
   return config;
 }

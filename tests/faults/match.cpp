@@ -192,7 +192,7 @@ void Match::leadAstray(std::size_t motor) {
       {.by_deg = kDegPerTurn / 2.0 - deg, .speed_rpm = kBackRpm, .torque_nm = kBackNm, .hold = 0s});
 }
 
-// What turns one motor of the lift turns the other: they move one thing.
+// A hand on one motor of the lift turns the other, too: they move one thing.
 std::vector<std::size_t> Match::oneThing(std::size_t motor) const {
   if (kRoles.at(motor).name != "lift_left" && kRoles.at(motor).name != "lift_right") return {motor};
   std::vector<std::size_t> both;

@@ -247,7 +247,7 @@ void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   const auto& reduced = motor.config->reduced;
   const auto& frames = motor.config->traits().frames;
   const bool fast = std::fabs(seen.feedback.velocity_rpm) > reduced.velocity_rpm + reduced.tolerance_rpm;
-  // What only resists is not taken away, and takes the place of a fallback that is dragged along.
+  // An action that only resists is not taken away, and takes the place of a fallback that is dragged along.
   const bool resisted =
       seen.acting == Acting::kDamp || (seen.acting == Acting::kBrake && frames.brake_resists);
   const bool led = seen.target.mode == ControlMode::kCoast && motor.actions != only(FallbackAction::kCoast);

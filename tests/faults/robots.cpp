@@ -365,7 +365,8 @@ buses:
          zero: power_on}
       - {name: lift_left, model: RMD-X8-20, id: 22, command_divider: 10, on_timeout: hold, zero: power_on}
       - {name: lift_right, model: RMD-X8-20, id: 23, command_divider: 10, on_timeout: hold, zero: power_on}
-      - {name: pan, model: LK-MG5010E-i10, id: 5, command_divider: 10, on_timeout: hold, stall_ms: 500}
+      - {name: pan, model: LK-MG5010E-i10, id: 5, command_divider: 10, on_timeout: hold, current_limit_a: 5,
+         stall_ms: 500}
   - name: legs
     type: sim
     data_bitrate: 5000000

@@ -57,9 +57,9 @@ struct Visits {
   std::map<std::string, MotorVisits> motors;  ///< By family, name and robot.
   void add(const Visits& other);
   [[nodiscard]] std::string text() const;
-  /// What a run of five minutes counts, and did not: nothing of that was judged.
+  /// Counters of a run of five minutes that stayed at zero: nothing of theirs was judged.
   [[nodiscard]] std::string idle() const;
-  /// The same of an hour: each counter, each mode of each motor or family, each fault that the
+  /// Those of an hour: each counter, each mode of each motor or family, each fault that the
   /// chaos provokes.
   [[nodiscard]] std::string idleInAnHour() const;
 };

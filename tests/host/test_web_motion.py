@@ -41,7 +41,7 @@ def now_us() -> int:
 STOOD_STILL = "does not answer"
 
 
-# Of a machine that stood still each time.
+# Tries on a machine that stood still each time.
 TIMES = 5
 
 

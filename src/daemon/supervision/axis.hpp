@@ -115,7 +115,7 @@ class Axis {
   [[nodiscard]] bool obeys(const Lease::Holder& sender, MonotonicTime now) const noexcept {
     return status_ == MotorStatus::kActive && allows(sender, now);
   }
-  /// What was said before does not act.
+  /// Words from before it do not act.
   [[nodiscard]] bool enabledSince(MonotonicTime said) const noexcept { return said < enabling_since_; }
   /// Takes a target that the lease allows. The reason, if it does not act.
   [[nodiscard]] std::optional<SkipReason> follow(const Target& target, const Lease::Holder& sender,
@@ -185,7 +185,7 @@ class Axis {
   Stop stop_;
   std::uint32_t limits_ = 0;      ///< Active limits, as the guard reports them.
   bool reference_known_ = false;  ///< In the last tick.
-  std::uint64_t losses_ = 0;      ///< Of its reference, up to the last tick.
+  std::uint64_t losses_ = 0;      ///< Losses of its reference, up to the last tick.
   std::uint64_t samples_ = 0;     ///< Count of its feedback in the last tick.
   Duration unheard_{};            ///< Time since it was heard; a pause of this thread is two periods of it.
   bool pause_forgiven_ = false;   ///< Since it was heard.

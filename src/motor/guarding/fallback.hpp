@@ -152,7 +152,7 @@ class Fallback {
   bool bounded_ = false;
   bool estop_ = false;
   MonotonicTime bound_{};
-  MonotonicTime ends_ = MonotonicTime::max();  ///< Of a ramp.
+  MonotonicTime ends_ = MonotonicTime::max();  ///< End of a ramp.
   FrameKind then_ = FrameKind::kDamp;
   MonotonicTime moved_{};
   double still_deg_ = 0.0;  ///< Angle at moved_; NaN: not seen yet.

@@ -275,7 +275,7 @@ TEST_F(GroupTest, MembersThatStandWaitForOneThatIsLost) {
   EXPECT_EQ(status(kRight), MotorStatus::kActive);
 }
 
-/// What becomes of an optional member while the others come back.
+/// An optional member, while the others come back.
 class OptionalMemberTest : public GroupTest {
  protected:
   /// `right` falls silent, and meanwhile this happens to `left`, which is optional and was ACTIVE.
