@@ -211,10 +211,7 @@ class Remote : public Module_Base {
     }
     // A remote that was never heard is not lost.
     if (was_heard_ < 0) return;
-    if (was_heard_ == 1) {
-      robot.report(kLost);
-      last_up_ = switch_up_ = std::nullopt;
-    }
+    if (was_heard_ == 1) robot.report(kLost);
     was_heard_ = 0;
     if (told_to_disable_ || tick.now - lost_since_ < disable_) return;
     told_to_disable_ = true;
@@ -236,9 +233,10 @@ class Remote : public Module_Base {
   }
 
   // Neither protocol has a checksum, and parity lets two wrong bits pass: of two frames in a row both are
-  // right.
+  // right. After a gap it is read anew; a single frame that the receiver lost is none.
   [[nodiscard]] std::optional<bool> switchUp(std::size_t channel, MonotonicTime received) noexcept {
     if (received == judged_) return switch_up_;
+    if (received - judged_ >= lost_) last_up_ = switch_up_ = std::nullopt;
     judged_ = received;
     const bool up = values_[channel] > arm_above_;
     if (last_up_ == up) {

@@ -55,6 +55,7 @@ struct MotorTraits {
   std::string_view unseen_limit_remedy{};
   /// Key with the drive's own limit of the current, which its loops obey in place of current_limit_a.
   std::string_view own_limit_key{};
+  bool peak_known = false;       ///< Those loops obey the model's peak current unless that key is written.
   ModeSet own_loops{};           ///< Modes whose loop obeys the drive's own maximum, not current_limit_a.
   bool limit_by_report = false;  ///< A loop of the drive is seen at its limit by the current that it reports.
   bool yields = false;           ///< A loop that bounds a force, to be overpowered by a larger one.

@@ -157,7 +157,7 @@ bool SoloMotor::currentAtLimit(double count_a) const noexcept {
 }
 
 bool SoloMotor::ownLoopAtLimit(double count_a) const noexcept {
-  return effort_limit_given_ && currentAtLimit(reportable(effort_limit_), count_a);
+  return (effort_limit_given_ || traits_.peak_known) && currentAtLimit(reportable(effort_limit_), count_a);
 }
 
 bool SoloMotor::currentAtLimit(double limit_a, double count_a) const noexcept {

@@ -54,7 +54,12 @@ void DriveClaims::take(const CanFrame& frame) {
     return of_sender(each) && each.first.id == sender->id;
   });
   const bool may_be = sender != motors_.end() && !own && maySend(*sender, frame);
-  if (may_be && guesses.empty()) unguessed_[static_cast<std::size_t>(sender - motors_.begin())] = true;
+  const auto index = static_cast<std::size_t>(sender - motors_.begin());
+  const bool anothers = std::all_of(guesses.begin(), guesses.end(), [&](const auto& each) {
+    const auto claim = of(each.first);
+    return claim && claim->assumed && !claim->collides && claim->motor != index;
+  });
+  if (may_be && anothers) unguessed_[index] = true;
   for (const auto& each : guesses) {
     const auto& guess = each.first;
     const auto* family = each.second;

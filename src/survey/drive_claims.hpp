@@ -53,7 +53,8 @@ class DriveClaims {
   std::vector<KnownMotor> motors_;
   std::vector<std::pair<DriveGuess, Claim>> claims_;
   std::vector<DriveGuess> strangers_;
-  std::vector<bool> unguessed_;  ///< Motors heard under an id at which no family is known.
+  std::vector<bool>
+      unguessed_;  ///< Motors heard under an id at which no family is known, or another of them.
 };
 
 }  // namespace rc10::survey

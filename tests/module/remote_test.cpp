@@ -412,6 +412,33 @@ TEST_F(Remote, AReceiverThatSaysFailsafeIsLost) {
   EXPECT_EQ(module_->outputs()[0], 0.0);
 }
 
+TEST_F(Remote, AFrameThatTheReceiverLostIsNoGapOfASwitchThatIsUp) {
+  build(settings("sbus", "ch3", "ch5"));
+  SbusInput sbus;
+  sbus.raw.fill(SbusInput::kCentre);
+  const auto send = [&](int switch_raw, bool lost = false) {
+    sbus.raw[4] = static_cast<std::uint16_t>(switch_raw);
+    sbus.frame_lost = lost;
+    const auto frame = SbusProtocol::encode(sbus);
+    for (int i = 0; i < 13; ++i) robot_.update(*module_);
+    protocol_->parse_stream(frame, robot_.now());
+    robot_.update(*module_);
+    return !robot_.sent().empty();
+  };
+  constexpr int kDown = 200;
+  constexpr int kUp = 1800;
+  for (const int raw : {kDown, kDown, kDown, kUp})
+    EXPECT_FALSE(send(raw));  // the first frame finds the rhythm
+  EXPECT_TRUE(send(kUp));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(send(kUp, true));
+    EXPECT_TRUE(send(kUp));
+  }
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(send(kUp, true));  // 112 ms: a gap
+  EXPECT_FALSE(send(kUp));
+  EXPECT_TRUE(send(kUp));
+}
+
 TEST(RemoteType, NamesTheChannelsThatThereAre) {
   EXPECT_THAT(remoteType().build(settings("sbus", "right_y", ""), outlineOf(1)).error().message,
               HasSubstr("sticks: there is no channel 'right_y'; there are ch1, ch2"));

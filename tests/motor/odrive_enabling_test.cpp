@@ -102,7 +102,7 @@ TEST_F(OdriveWithoutCurrent, IsAFaultWhileItObeysUnlessNoneIsAskedFor) {
     hears(200ms, 1);
     obey();
     feed(odrive::Message::kIq, 0.0F, 0.0F);
-    hears(telemetry_hz == 1 ? 2990ms : 2490ms, 8);
+    hears(telemetry_hz == 1 ? 4990ms : 2490ms, 8);
     EXPECT_EQ(fault(), FaultCode::kNone) << telemetry_hz;
     hears(20ms, 8);
     EXPECT_EQ(fault(), telemetry_hz > 0 ? FaultCode::kDriveSetting : FaultCode::kNone) << telemetry_hz;

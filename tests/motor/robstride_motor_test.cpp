@@ -134,6 +134,25 @@ TEST(RobStrideMotor, BeyondTheScaleOperationModeOnlyDamps) {
   EXPECT_NE(bench.motor.limits() & kLimitAngle, 0U);
 }
 
+TEST(RobStrideMotor, AtTheEndOfAScaleThatDoesNotWrapAnAbsoluteAngleIsLostOnce) {
+  auto settings = robStrideSettings("RS00");
+  settings.own.set("position_range_rad", 12.5);
+  Bench bench(settings);
+  bench.codec.position_range_rad = 12.5;
+  bench.run(12.4);
+  ASSERT_TRUE(bench.motor.feedback().zeroed);
+  const auto before = bench.motor.feedback().losses;
+  for (int i = 0; i < 20; ++i) {
+    bench.now += milliseconds{1};
+    bench.run(13.0);
+    EXPECT_FALSE(bench.motor.feedback().zeroed);
+  }
+  bench.now += milliseconds{1};
+  bench.run(12.4);
+  EXPECT_TRUE(bench.motor.feedback().zeroed);
+  EXPECT_GE(bench.motor.feedback().losses, before + 1);
+}
+
 TEST(RobStrideMotor, TheEndOfAScaleThatDoesNotWrapLosesTheReference) {
   Bench bench(robStrideSettings("CyberGear"));
   bench.run(12.4);

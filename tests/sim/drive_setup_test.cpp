@@ -226,6 +226,20 @@ TEST_F(DriveSetupTest, ARobStrideParameterIsWrittenReadBackAndStored) {
   EXPECT_THAT(frames, Contains("1600FD03#0102030405060708"));
 }
 
+TEST_F(DriveSetupTest, AWriteOfOurOwnToARobStrideThatRestsIsNoFault) {
+  useRobStride();
+  auto& motor = rig->motor();
+  motor.order(FrameKind::kEnable);
+  for (int i = 0; i < 2000 && motor.sequenceProgress() == SequenceProgress::kPending; ++i)
+    rig->run(std::chrono::milliseconds{1});
+  ASSERT_EQ(motor.sequenceProgress(), SequenceProgress::kDone);
+  motor.order(FrameKind::kPoll);
+  rig->run(std::chrono::milliseconds{10});
+  begin("timeout_ms", 1000, false);
+  EXPECT_EQ(finish(), Progress::kDone);
+  EXPECT_EQ(motor.complaint().fault, FaultCode::kNone);
+}
+
 // Its answer to any frame is that to the save frame, too.
 TEST_F(DriveSetupTest, ARobStrideThatMissesTheSaveFrameIsNotTakenToHaveStored) {
   useRobStride();

@@ -95,6 +95,16 @@ TEST(DriveClaims, ADamiaoWithTheMasterIdOfAnotherFamilyIsTheMotorOfTheFile) {
   EXPECT_THAT(claims.unheard(), IsEmpty());
 }
 
+TEST(DriveClaims, TwoDamiaoWithOneMasterIdOfAnotherFamilyAreBothHeard) {
+  auto second = damiao(0x201, 2);
+  second.name = "wrist";
+  DriveClaims claims{{damiao(0x201, 1), second}};
+  claims.take(frameOf("201#0104442010101E1E"));
+  EXPECT_THAT(claims.unheard(), ElementsAre("wrist"));
+  claims.take(frameOf("201#0204442010101E1E"));
+  EXPECT_THAT(claims.unheard(), IsEmpty());
+}
+
 TEST(DriveClaims, ADamiaoWhoseMasterIdIsNoOtherFamilysIsHeard) {
   DriveClaims claims{{damiao(0x7E0, 1)}};
   claims.take(frameOf("7E0#017FFF7FF7FF1E1E"));

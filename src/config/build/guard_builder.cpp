@@ -116,7 +116,8 @@ void checkRunaway(MotorParse& in, const GivenValue& given) {
                   std::string{in.traits.unseen_limit_remedy} +
                   ", or write an overspeed_rpm below its no-load speed instead");
   }
-  const bool in_loops = seen && (in.traits.own_limit_key.empty() || in.motor().own_limit_known);
+  const bool known = in.traits.own_limit_key.empty() || in.motor().own_limit_known || in.traits.peak_known;
+  const bool in_loops = seen && known;
   if (in_loops) return;
   in.problems.warning(given.place(), given.path,
                       "acts on current targets alone: that a loop of the drive is at its limit is not known" +

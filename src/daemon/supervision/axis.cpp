@@ -210,9 +210,11 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
 }
 
 bool Axis::tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
-  // It is not taken away for a speed: a load would fall. A target after it has the whole time to slow down.
+  using Motion = ReducedMotion::Motion;
+  // It is not taken away for a speed: a load would fall.
   const bool resisted = fallback_.acts() && resists(fallback_.kind(), motor_.driveFrames());
-  const bool too_fast = reduced_.step(reduced, moves && !resisted, motor_.feedback(), tick);
+  const Motion motion = !moves ? Motion::kNone : resisted ? Motion::kResisted : Motion::kLed;
+  const bool too_fast = reduced_.step(reduced, motion, motor_.feedback(), tick);
   shaper_.setCeiling(reduced_.ceilingRpm());
   if (!too_fast || !fallback_.acts()) return too_fast;
   const FrameKind resistance = resistanceOf(motor_.driveFrames());

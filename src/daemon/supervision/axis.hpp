@@ -99,6 +99,7 @@ class Axis {
   }
   /// Its group stops while it holdsDisabled().
   void stopHolding(const Tick& tick) noexcept {
+    rested_ = Rested::kAsked;
     beginFallback(entry_.fallback.on_estop, Fallback::Until::kEnded, false, tick);
   }
   /// Before MotorEvent::kEstop of the robot: a fallback that acts already gives way to that of the e-stop.

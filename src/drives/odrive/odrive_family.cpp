@@ -116,7 +116,9 @@ class OdriveFamily : public MotorFamily {
     for (const auto message :
          {Message::kEstop, Message::kSetAxisState, Message::kSetControllerMode, Message::kSetInputPos,
           Message::kSetInputVel, Message::kSetInputTorque, Message::kSetLimits, Message::kReboot,
-          Message::kClearErrors, Message::kSetPosition})
+          Message::kClearErrors, Message::kSetPosition, Message::kSetTrajVelocity,
+          Message::kSetTrajAcceleration, Message::kSetTrajInertia, Message::kSetPositionGain,
+          Message::kSetVelocityGains})
       use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
     for (const auto message : v06 ? std::array{Message::kEnterDfu, Message::kRxSdo}
                                   : std::array{Message::kStartAnticogging, Message::kSetNodeId})

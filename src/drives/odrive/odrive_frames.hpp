@@ -22,14 +22,19 @@ enum class Message : std::uint8_t {
   kSetInputTorque = 0x0E,
   kSetLimits = 0x0F,
   kStartAnticogging = 0x10,  ///< Firmware 0.5.
+  kSetTrajVelocity = 0x11,
+  kSetTrajAcceleration = 0x12,
+  kSetTrajInertia = 0x13,
   kIq = 0x14,
   kTemperature = 0x15,  ///< Firmware 0.6; 0.5 sends its sensorless estimates here.
   kReboot = 0x16,
   kBusVoltage = 0x17,
   kClearErrors = 0x18,
   kSetPosition = 0x19,  ///< Renames the present position, and a position loop goes there.
-  kTorques = 0x1C,      ///< Firmware 0.6; 0.5 answers here with the voltage of a pin.
-  kEnterDfu = 0x1F,     ///< Firmware 0.6.
+  kSetPositionGain = 0x1A,
+  kSetVelocityGains = 0x1B,
+  kTorques = 0x1C,   ///< Firmware 0.6; 0.5 answers here with the voltage of a pin.
+  kEnterDfu = 0x1F,  ///< Firmware 0.6.
 };
 inline constexpr std::uint8_t kSdoWrite = 1;
 inline constexpr std::uint32_t kMessageBits = 5;

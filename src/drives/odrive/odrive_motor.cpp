@@ -24,7 +24,7 @@ constexpr Duration kOdriveRestartSilence = milliseconds{200};
 constexpr int kRestartPeriods = 5;
 // Telemetry may come once a second; what is older is not known any more.
 constexpr Duration kTelemetryLife = milliseconds{2500};
-constexpr int kTelemetryPeriods = 3;
+constexpr int kTelemetryPeriods = 5;
 
 Duration currentPatience(const OwnValues& own) noexcept {
   const int hz = own.integer("telemetry_hz");

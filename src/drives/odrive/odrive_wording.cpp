@@ -34,6 +34,11 @@ std::string wordOdrive(const CanFrame& frame, std::string_view /*model*/, bool /
     case odrive::Message::kReboot: return FrameWords{node, "reboot"}.take();
     case odrive::Message::kStartAnticogging: return FrameWords{node, "start anticogging"}.take();
     case odrive::Message::kSetPosition: return FrameWords{node, "set position"}.take();
+    case odrive::Message::kSetTrajVelocity: return FrameWords{node, "set trajectory velocity"}.take();
+    case odrive::Message::kSetTrajAcceleration: return FrameWords{node, "set trajectory acceleration"}.take();
+    case odrive::Message::kSetTrajInertia: return FrameWords{node, "set trajectory inertia"}.take();
+    case odrive::Message::kSetPositionGain: return FrameWords{node, "set position gain"}.take();
+    case odrive::Message::kSetVelocityGains: return FrameWords{node, "set velocity gains"}.take();
     case odrive::Message::kEnterDfu: return FrameWords{node, "enter firmware update"}.take();
     // Other things in the two generations of firmware.
     case odrive::Message::kRxSdo:

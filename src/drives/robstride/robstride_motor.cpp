@@ -184,6 +184,8 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
   feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   feedback_.temperature_c = static_cast<float>(seen.temperature_c);
   acceptSample(received, position_rad_ * kDegPerRad);
+  // An absolute encoder alone would know it again there.
+  if (feedback_.angle_at_end) loseReference();
   enabling_.onFeedback(seen);
 }
 
@@ -240,7 +242,8 @@ void RobStride_Motor::takeParameter(const CanFrame& frame) noexcept {
     feedback_.voltage_v = static_cast<float>(value);
   }
   if (accepted && index == parameter::kPosition) takePosition(value);
-  enabling_.onParameter(index, accepted, bits);
+  // Settings of a drive at rest count when it is enabled.
+  if (enabling() || obeying()) enabling_.onParameter(index, accepted, bits);
 }
 
 // ---- Packing

@@ -195,11 +195,26 @@ class VescFamily final : public MotorFamily {
         FrameFilter{.id = {static_cast<std::uint32_t>(vesc::kBroadcast), true}, .mask = kObeyedMask}};
     using vesc::Packet;
     for (const int id : {settings.id, vesc::kBroadcast}) {
-      for (const auto packet :
-           {Packet::kSetDuty, Packet::kSetCurrent, Packet::kSetCurrentBrake, Packet::kSetErpm,
-            Packet::kSetPosition, Packet::kSetCurrentRelative, Packet::kSetCurrentBrakeRelative,
-            Packet::kSetHandbrake, Packet::kSetHandbrakeRelative, Packet::kDetect, Packet::kShutdown,
-            Packet::kSetPositionOffset})
+      for (const auto packet : {Packet::kSetDuty,
+                                Packet::kSetCurrent,
+                                Packet::kSetCurrentBrake,
+                                Packet::kSetErpm,
+                                Packet::kSetPosition,
+                                Packet::kSetCurrentRelative,
+                                Packet::kSetCurrentBrakeRelative,
+                                Packet::kSetHandbrake,
+                                Packet::kSetHandbrakeRelative,
+                                Packet::kDetect,
+                                Packet::kShutdown,
+                                Packet::kSetPositionOffset,
+                                Packet::kSetCurrentLimits,
+                                Packet::kStoreCurrentLimits,
+                                Packet::kSetInputCurrentLimits,
+                                Packet::kStoreInputCurrentLimits,
+                                Packet::kSetFocErpms,
+                                Packet::kStoreFocErpms,
+                                Packet::kSetBatteryCut,
+                                Packet::kStoreBatteryCut})
         use.steers.push_back({.id = vesc::canId(packet, id)});
       // A tool at another drive's USB passes its commands on: sender, a flag, then the command.
       for (const auto command : vesc::kPassedCommands)

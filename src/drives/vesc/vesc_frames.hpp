@@ -29,7 +29,15 @@ enum class Packet : std::uint8_t {
   kPing = 17,
   kPong = 18,
   kDetect = 19,  ///< Turns the motor to measure it.
+  kSetCurrentLimits = 21,
+  kStoreCurrentLimits = 22,
+  kSetInputCurrentLimits = 23,
+  kStoreInputCurrentLimits = 24,
+  kSetFocErpms = 25,
+  kStoreFocErpms = 26,
   kStatus5 = 27,
+  kSetBatteryCut = 29,
+  kStoreBatteryCut = 30,
   kShutdown = 31,
   kSetPositionOffset = 55,  ///< Moves the place that its position loop holds.
   kNotifyBoot = 57,         ///< Sent once when the drive has started; since firmware 6.00.

@@ -6,24 +6,43 @@
 #include "motor/guarding/motor_guard.hpp"
 
 namespace rc10 {
+namespace {
 
-bool ReducedMotion::step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept {
+// A client that lapses now and then does not begin the monitored time anew.
+constexpr Duration kLastingResistance = std::chrono::milliseconds{500};
+
+}  // namespace
+
+bool ReducedMotion::step(bool reduced, Motion motion, const MotorFeedback& feedback,
+                         const Tick& tick) noexcept {
+  const bool moves = motion != Motion::kNone;
+  const bool anew = endsResistance(motion, tick.now);
   if (!reduced) {
     acts_ = false;
     lift(tick.dt_s);
     return false;
   }
   const float speed_rpm = std::fabs(feedback.velocity_rpm);
-  if (!moves || !acts_) begin(speed_rpm, tick.now);
+  if (!moves || !acts_ || anew) begin(speed_rpm, tick.now);
   acts_ = moves;
   reduce(speed_rpm, tick);
-  const bool due = acts_ && config_.velocity_rpm > 0.0F && tick.now - since_ >= config_.within;
+  const bool due =
+      motion == Motion::kLed && config_.velocity_rpm > 0.0F && tick.now - since_ >= config_.within;
   if (!due) {
     fast_samples_ = 0;
     samples_ = feedback.samples;
     return false;
   }
   return tooFast(feedback);
+}
+
+// A load may have spun the shaft up meanwhile: the target after it has the whole time to slow it down.
+bool ReducedMotion::endsResistance(Motion motion, MonotonicTime now) noexcept {
+  const bool resisted = motion == Motion::kResisted;
+  if (resisted && !resisted_) resisted_since_ = now;
+  const bool ends = resisted_ && !resisted;
+  resisted_ = resisted;
+  return ends && now - resisted_since_ >= kLastingResistance;
 }
 
 // From what is measured: a target that the shaft has not reached yet is no reason to gain speed.

@@ -31,9 +31,14 @@ class ReducedMotion {
 
   explicit ReducedMotion(const ReducedConfig& config) noexcept : config_(config), any_(config.any()) {}
 
-  /// Once a tick. `moves`: the motor follows a target or a fallback; the monitored time begins with that, or
-  /// with `reduced`. True: it is faster than it may be, after the monitored time. Only where there is any().
-  [[nodiscard]] bool step(bool reduced, bool moves, const MotorFeedback& feedback, const Tick& tick) noexcept;
+  /// A motor at rest; one that only resists what drags it; one that follows a target or a fallback.
+  enum class Motion : std::uint8_t { kNone, kResisted, kLed };
+
+  /// Once a tick. The monitored time begins with the motion, with `reduced`, and after a resistance that
+  /// lasted. True: a motor that is led is faster than it may be, after the monitored time. Only where there
+  /// is any().
+  [[nodiscard]] bool step(bool reduced, Motion motion, const MotorFeedback& feedback,
+                          const Tick& tick) noexcept;
   /// Whether anything is ever reduced.
   [[nodiscard]] bool any() const noexcept { return any_; }
 
@@ -43,6 +48,7 @@ class ReducedMotion {
   [[nodiscard]] float effortShare() const noexcept { return share_; }
 
  private:
+  [[nodiscard]] bool endsResistance(Motion motion, MonotonicTime now) noexcept;
   void begin(float speed_rpm, MonotonicTime now) noexcept;
   void reduce(float speed_rpm, const Tick& tick) noexcept;
   void lift(float dt_s) noexcept;
@@ -56,6 +62,8 @@ class ReducedMotion {
   bool acts_ = false;        ///< Reduced, of a motor that moves.
   bool comes_down_ = false;  ///< Faster than it may be, within the monitored time.
   MonotonicTime since_{};
+  bool resisted_ = false;  ///< In the last tick.
+  MonotonicTime resisted_since_{};
   std::uint64_t samples_ = 0;
   int fast_samples_ = 0;
 };

@@ -265,6 +265,13 @@ TEST_P(StallTest, AReversedEncoderIsARunawayInEachLoop) {
   }
 }
 
+TEST(RunawayOfMyActuator, IsSeenAtThePeakOfItsModelWhereNoLimitIsWritten) {
+  OneMotor motor{"model: RMD-X8-20, id: 24, zero: power_on", ""};
+  motor.robot().simBus().setEncoderFault(0, {.reversed = true});
+  motor.follow(ControlMode::kVelocity, 60.0, 3000);
+  EXPECT_EQ(motor.seen().fault, FaultCode::kRunaway);
+}
+
 // A shove during the loop is over when the next order comes.
 TEST_P(StallTest, AShoveBeforeItIsLetGoIsNoRunaway) {
   const auto [mode, value] = taskOf(OneMotor{GetParam().keys, GetParam().bus}, GetParam().rpm);

@@ -99,29 +99,29 @@ TEST_F(GroupTest, AMemberThatHoldsStaysSoWhenAnotherIsDisabledAndNobodyAskedForI
 }
 
 TEST_F(GroupTest, AMemberThatHoldsAfterADisableStopsWithOneThatIsLost) {
-  auto config = coupled(GroupConfig::Return::kRequest);
-  auto& right = config.buses[1].motors[0].fallback;
-  right.on_disable = FallbackAction::kHold;
-  right.on_estop = FallbackAction::kDamp;
-  robot = std::make_unique<VirtualRobot>(config);
-  robot->run(5);
-  robot->order(Operation::kEnable);
-  drive(100);
-  robot->carryOut({.operation = Operation::kDisable, .motors = only(kLeft).set(kRight)});
-  robot->run(100);
-  ASSERT_EQ(status(kRight), MotorStatus::kReady);
-  ASSERT_EQ(robot->motor(kRight).acting, Acting::kHold);
-  (void)robot->events();
-  robot->freezeBus(0, true);
-  for (int i = 0; i < 100 && status(kLeft) != MotorStatus::kOffline; ++i) {
-    EXPECT_EQ(robot->motor(kRight).acting, Acting::kHold);
-    robot->tick();
+  for (const auto asked : {Asked::kAnew, Asked::kUnasked}) {
+    auto config = coupled(GroupConfig::Return::kRequest);
+    auto& right = config.buses[1].motors[0].fallback;
+    right.on_timeout = right.on_disable = FallbackAction::kHold;
+    right.on_estop = FallbackAction::kDamp;
+    robot = std::make_unique<VirtualRobot>(config);
+    robot->run(5);
+    robot->order(Operation::kEnable);
+    drive(100);
+    if (asked == Asked::kUnasked) robot->run(200);  // silence
+    robot->carryOut({.operation = Operation::kDisable, .motors = only(kLeft).set(kRight), .asked = asked});
+    robot->run(100);
+    (void)robot->events();
+    robot->freezeBus(0, true);
+    for (int i = 0; i < 100 && status(kLeft) != MotorStatus::kOffline; ++i, robot->tick())
+      EXPECT_EQ(robot->motor(kRight).acting, Acting::kHold);
+    EXPECT_EQ(robot->motor(kRight).acting, Acting::kDamp) << "in that tick";
+    EXPECT_TRUE(told(EventCode::kGroupStopped));
+    robot->run(100);
+    EXPECT_FALSE(told(EventCode::kGroupStopped)) << "once";
+    robot->carryOut({.operation = Operation::kDisable, .motors = only(kRight), .asked = Asked::kAnew});
+    EXPECT_EQ(robot->motor(kRight).acting, Acting::kNothing) << "one disable lets go";
   }
-  ASSERT_EQ(status(kLeft), MotorStatus::kOffline);
-  EXPECT_EQ(robot->motor(kRight).acting, Acting::kDamp) << "in that tick";
-  EXPECT_TRUE(told(EventCode::kGroupStopped));
-  robot->run(100);
-  EXPECT_FALSE(told(EventCode::kGroupStopped)) << "once";
 }
 
 TEST_F(GroupTest, AMemberThatIsHeldWhileAnotherWasMissingBeforeIsNotLetGo) {

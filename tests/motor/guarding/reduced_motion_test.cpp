@@ -13,14 +13,19 @@ using namespace std::chrono_literals;
 
 class ReducedMotionTest : public ::testing::Test {
  protected:
+  using Motion = ReducedMotion::Motion;
+
   /// The first of these ticks that finds it too fast; 0: none does.
   int step(bool reduced, bool moves, float velocity_rpm, int ticks = 1) {
+    return step(reduced, moves ? Motion::kLed : Motion::kNone, velocity_rpm, ticks);
+  }
+  int step(bool reduced, Motion motion_now, float velocity_rpm, int ticks = 1) {
     int found = 0;
     for (int i = 1; i <= ticks; ++i) {
       feedback.velocity_rpm = velocity_rpm;
       ++feedback.samples;
       tick.now += 1ms;
-      if (motion.step(reduced, moves, feedback, tick) && found == 0) found = i;
+      if (motion.step(reduced, motion_now, feedback, tick) && found == 0) found = i;
     }
     return found;
   }
@@ -49,6 +54,31 @@ TEST_F(ReducedMotionTest, AShaftThatIsStillFastAfterTheTimeHasReducedEffort) {
   EXPECT_EQ(motion.effortShare(), 1.0F);
   step(true, true, 180.0F, 20);
   EXPECT_EQ(motion.effortShare(), 0.5F);
+}
+
+TEST_F(ReducedMotionTest, AnActionThatOnlyResistsHasReducedEffortAfterTheTimeAndIsNeverTooFast) {
+  EXPECT_EQ(step(true, Motion::kResisted, 180.0F, 990), 0);
+  EXPECT_EQ(motion.effortShare(), 1.0F);
+  EXPECT_EQ(step(true, Motion::kResisted, 180.0F, 2000), 0);
+  EXPECT_EQ(motion.effortShare(), 0.5F);
+}
+
+TEST_F(ReducedMotionTest, ATargetAfterAResistanceThatLastedHasTheWholeTime) {
+  step(true, Motion::kResisted, 180.0F, 3000);
+  EXPECT_EQ(step(true, Motion::kLed, 180.0F, 990), 0);
+  EXPECT_EQ(motion.effortShare(), 1.0F);
+  EXPECT_NE(step(true, Motion::kLed, 180.0F, 20), 0);
+}
+
+TEST_F(ReducedMotionTest, AClientThatLapsesNowAndThenDoesNotBeginTheTimeAnew) {
+  int too_fast_at_ms = 0;
+  for (int at_ms = 0; at_ms < 1200 && too_fast_at_ms == 0; at_ms += 67) {
+    const int found = step(true, Motion::kLed, 180.0F, 50);
+    if (found > 0) too_fast_at_ms = at_ms + found;
+    EXPECT_EQ(step(true, Motion::kResisted, 180.0F, 17), 0);
+  }
+  EXPECT_GE(too_fast_at_ms, 1000);
+  EXPECT_EQ(motion.ceilingRpm(), 20.0);
 }
 
 TEST_F(ReducedMotionTest, AContactThatOpensAnewWhileItStillLiftsBrakesWithAllToo) {
@@ -133,12 +163,12 @@ TEST_F(ReducedMotionTest, ASpeedAtTheToleranceAndAFewSamplesAboveItAreNotTooFast
 TEST_F(ReducedMotionTest, ASampleCountsOnce) {
   step(true, true, 10.0F, 1100);
   EXPECT_EQ(step(true, true, 30.0F, kFastSamples - 1), 0);
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(motion.step(true, true, feedback, tick));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(motion.step(true, Motion::kLed, feedback, tick));
   step(true, false, 30.0F);
   step(true, true, 30.0F, 998);
   tick.now += 1s;
   for (int i = 0; i < 10; ++i)
-    EXPECT_FALSE(motion.step(true, true, feedback, tick)) << "none came in the time";
+    EXPECT_FALSE(motion.step(true, Motion::kLed, feedback, tick)) << "none came in the time";
 }
 
 TEST_F(ReducedMotionTest, AMotorThatBeginsToMoveHasItsTimeAnew) {
