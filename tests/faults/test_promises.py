@@ -31,7 +31,7 @@ from faultrig import (
 from faulty_drives import Fault
 from guestlib import can_frame, can_socket, run, wait_for
 from module_rig import let_pass
-from rig import MS, currents, wait_status
+from rig import MS, currents, next_diagnostics, wait_status
 
 import rc10
 from rc10.lcm_types import request_t
@@ -47,6 +47,11 @@ OFFLINE, FAULT = rc10.MotorStatus.OFFLINE, rc10.MotorStatus.FAULT
 NOT_AT_REST, FOREIGN, STALLED = 8, 9, 3
 SETPOINT_SKIPPED = 103  # of EventCode
 ARM_KEYS = "on_timeout: brake, on_estop: brake}"
+
+
+def skipped(robot: rc10.Robot) -> int:
+    """Setpoints that rc10d did not follow."""
+    return int(dict(next_diagnostics(robot).refusals).get("setpoint skipped", 0))
 
 
 def has(robot: rc10.Robot, name: str, status: rc10.MotorStatus) -> Callable[[], bool]:
@@ -432,14 +437,14 @@ def test_places_beyond_all_reach_are_refused() -> None:
         assert after_deg == pytest.approx(before_deg, abs=1)
         nothing("`zero` at 1e17 deg", "refused")
         robot.enable()
-        before = refusals(robot, "setpoint skipped")
+        before = skipped(robot)
         robot.events()
         stranger = Stranger()
         for value in (1e17, -1e300):
             for _ in range(10):
                 stranger.command("left", TOTAL_ANGLE, value)
                 time.sleep(0.01)
-        wait_for(lambda: refusals(robot, "setpoint skipped") == before + 20, 5.0, "all are counted")
+        wait_for(lambda: skipped(robot) == before + 20, 5.0, "all are counted")
         told = [event for event in robot.events() if event.code == SETPOINT_SKIPPED]
         assert told
         assert {event.source for event in told} == {"left"}
@@ -468,14 +473,6 @@ def test_the_end_of_a_program_is_a_timeout() -> None:
         nothing("`rc10ctl set ... --for` ends", "`on_timeout` holds the load")
 
 
-def refusals(robot: rc10.Robot, reason: str) -> int:
-    """As the diagnostics say, which come once a second."""
-    robot.wait_for_state(1.0)
-    with contextlib.suppress(rc10.NotReceived):
-        return int(dict(robot.diagnostics.refusals).get(reason, 0))
-    return 0
-
-
 def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
     with robot_under_test() as (_, robot, log):
         # Almost what is torque at rest: 1 A (5 % of what an M3508 reports) for 100 ms.
@@ -483,12 +480,12 @@ def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
         wait_for(has(robot, "left", READY), 2.0)
         break_drive(LEFT, Fault.LEAKY, 90)
         wait_for(lambda: robot.wait_for_state(1.0).motors["left"].current_a > 0.85, 2.0)
-        time.sleep(0.5)
+        let_pass(robot, 0.5)
         for _ in range(3):
             break_drive(LEFT, Fault.LEAKY, 150)
-            time.sleep(0.06)
+            let_pass(robot, 0.06)
             break_drive(LEFT, Fault.NONE)
-            time.sleep(0.2)
+            let_pass(robot, 0.2)
         assert robot.wait_for_state(1.0).motors["left"].status is READY
         nothing("a current at rest below `rest_current_a`, or shorter than `rest_ms`", "no stop")
         # As a control: it is one that is seen.
@@ -496,7 +493,7 @@ def test_what_only_turns_a_motor_is_no_reason_to_stop() -> None:
         wait_for(has(robot, "left", FAULT), 2.0)
         assert robot.motor("left").fault == NOT_AT_REST
         break_drive(LEFT, Fault.NONE)
-        time.sleep(0.1)
+        wait_for(lambda: robot.wait_for_state(1.0).motors["left"].current_a < 0.1, 2.0)
         robot.clear(["left"])
         wait_for(has(robot, "left", READY), 2.0)
         robot.enable()

@@ -82,6 +82,13 @@ class Remote : public ::testing::Test {
     armSwitch(Dr16Input::Switch::kDown);
     armSwitch(Dr16Input::Switch::kUp);
   }
+  void loseLinkWhileArmed(MotorStatus status) {
+    build();
+    robot_.motor(0).status = status;
+    arm();
+    run(300, false);
+    asked_.clear();
+  }
   double armed() { return module_->outputs()[1]; }
   double shown(std::string_view output) {
     const auto& names = module_->signals().outputs;
@@ -309,11 +316,7 @@ TEST_F(Remote, AMotorWhoseDriveHasRefusedIsAskedForAgain) {
 }
 
 TEST_F(Remote, AfterAGapItActsOnTheSwitchOfNoSingleFrame) {
-  build();
-  robot_.motor(0).status = MotorStatus::kFault;
-  arm();
-  run(300, false);
-  asked_.clear();
+  loseLinkWhileArmed(MotorStatus::kFault);
   run(14);
   ASSERT_EQ(shown("connected"), 1.0);
   EXPECT_THAT(robot_.sent(), IsEmpty()) << "the first frame: the switch may be down";
@@ -325,11 +328,7 @@ TEST_F(Remote, AfterAGapItActsOnTheSwitchOfNoSingleFrame) {
 }
 
 TEST_F(Remote, ASwitchThatWentDownInAGapNeitherEnablesNorCommands) {
-  build();
-  robot_.motor(0).status = MotorStatus::kReady;
-  arm();
-  run(300, false);
-  asked_.clear();
+  loseLinkWhileArmed(MotorStatus::kReady);
   dbus_.left_switch = Dr16Input::Switch::kDown;
   for (int i = 0; i < 100; ++i) {
     run(1);

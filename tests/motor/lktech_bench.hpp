@@ -38,10 +38,6 @@ inline CanFrame readingReply(int current_raw, int rotor_deg_s, std::uint16_t enc
   return frame;
 }
 
-inline CanFrame angleReply(std::int32_t raw) {
-  CanFrame frame = frameOf("141#9200000000000000");
-  writeLittleEndian(frame.data, 1, raw);
-  return frame;
-}
+inline CanFrame angleReply(std::int32_t raw) { return frameOf("141#9200000000000000", 1, raw); }
 
 }  // namespace rc10::test::lktech_bench

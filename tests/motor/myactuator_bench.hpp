@@ -41,17 +41,9 @@ inline MyActuator_Motor motorOf(const MotorSettings& settings) {
   return MyActuator_Motor(settings, myactuatorFamily().traits(settings.model, settings.own));
 }
 
-inline CanFrame angleReply(std::int32_t raw) {
-  CanFrame frame = frameOf("241#9200000000000000");
-  writeLittleEndian(frame.data, 4, raw);
-  return frame;
-}
+inline CanFrame angleReply(std::int32_t raw) { return frameOf("241#9200000000000000", 4, raw); }
 
-inline CanFrame uptimeReply(std::uint32_t ms) {
-  CanFrame frame = frameOf("241#B100000000000000");
-  writeLittleEndian(frame.data, 4, ms);
-  return frame;
-}
+inline CanFrame uptimeReply(std::uint32_t ms) { return frameOf("241#B100000000000000", 4, ms); }
 
 /// Hands frames over at 1 ms spacing, answering nothing by itself.
 class MyActuatorMotor : public testing::Test {

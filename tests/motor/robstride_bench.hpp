@@ -53,6 +53,10 @@ class Bench {
   FrameVerdict run(double position_rad = 0.0, double velocity_rad_s = 0.0) {
     return say({.position_rad = position_rad, .velocity_rad_s = velocity_rad_s, .mode = robstride::kRunning});
   }
+  FrameVerdict runAfter(Duration pause, double position_rad, double velocity_rad_s = 0.0) {
+    now += pause;
+    return run(position_rad, velocity_rad_s);
+  }
   FrameVerdict parameter(std::uint16_t index, std::uint32_t bits, bool known = true) {
     auto frame = codec.parameter(index, bits, known);
     frame.received = now;

@@ -126,8 +126,7 @@ TEST(RobStrideMotor, TurnsAreCountedAcrossTheEndOfTheScale) {
 TEST(RobStrideMotor, BeyondTheScaleOperationModeOnlyDamps) {
   Bench bench(robStrideSettings("RS00"));
   bench.run(12.5);
-  bench.now += milliseconds{2};
-  bench.run(-12.5);  // two turns and a little more
+  bench.runAfter(milliseconds{2}, -12.5);  // two turns and a little more
   const auto told = bench.operation({.mode = ControlMode::kTotalAngle, .value = 0.0});
   EXPECT_EQ(told.stiffness_nm_per_rad, 0.0);
   EXPECT_GT(told.damping_nms_per_rad, 0.0);
@@ -143,12 +142,10 @@ TEST(RobStrideMotor, AtTheEndOfAScaleThatDoesNotWrapAnAbsoluteAngleIsLostOnce) {
   ASSERT_TRUE(bench.motor.feedback().zeroed);
   const auto before = bench.motor.feedback().losses;
   for (int i = 0; i < 20; ++i) {
-    bench.now += milliseconds{1};
-    bench.run(13.0);
+    bench.runAfter(milliseconds{1}, 13.0);
     EXPECT_FALSE(bench.motor.feedback().zeroed);
   }
-  bench.now += milliseconds{1};
-  bench.run(12.4);
+  bench.runAfter(milliseconds{1}, 12.4);
   EXPECT_TRUE(bench.motor.feedback().zeroed);
   EXPECT_GE(bench.motor.feedback().losses, before + 1);
 }
@@ -157,12 +154,10 @@ TEST(RobStrideMotor, TheEndOfAScaleThatDoesNotWrapLosesTheReference) {
   Bench bench(robStrideSettings("CyberGear"));
   bench.run(12.4);
   ASSERT_TRUE(bench.motor.setZero(0.0));
-  bench.now += milliseconds{2};
-  bench.run(13.0);
+  bench.runAfter(milliseconds{2}, 13.0);
   EXPECT_FALSE(bench.motor.feedback().zeroed);
   EXPECT_TRUE(bench.motor.feedback().angle_at_end);
-  bench.now += milliseconds{2};
-  bench.run(12.4);
+  bench.runAfter(milliseconds{2}, 12.4);
   EXPECT_FALSE(bench.motor.feedback().angle_at_end);
 }
 
@@ -170,19 +165,16 @@ TEST(RobStrideMotor, ALongSilenceLosesTheReferenceOfACyberGear) {
   Bench bench(robStrideSettings("CyberGear"));
   bench.run(0.3);
   ASSERT_TRUE(bench.motor.setZero(0.0));
-  bench.now += milliseconds{150};
-  bench.run(0.3);
+  bench.runAfter(milliseconds{150}, 0.3);
   EXPECT_TRUE(bench.motor.feedback().zeroed);
-  bench.now += milliseconds{250};
-  bench.run(0.3);
+  bench.runAfter(milliseconds{250}, 0.3);
   EXPECT_FALSE(bench.motor.feedback().zeroed);
 }
 
 TEST(RobStrideMotor, AJumpIsCountedAndAnglesAreNotFollowedUntilEnabledAnew) {
   Bench bench(robStrideSettings("RS00"));
   bench.run(0.0);
-  bench.now += milliseconds{1};
-  bench.run(2.0);
+  bench.runAfter(milliseconds{1}, 2.0);
   EXPECT_EQ(bench.motor.feedback().jumps, 1U);
   EXPECT_EQ(bench.operation({.mode = ControlMode::kTotalAngle, .value = 0.0}).stiffness_nm_per_rad, 0.0);
   bench.tick(FrameKind::kEnable);
@@ -199,8 +191,7 @@ TEST(RobStrideMotor, GearAndDirectionApplyToAllReadings) {
   EXPECT_NEAR(bench.motor.feedback().velocity_rpm, -kRpmPerRadPerS, 0.01);
   EXPECT_NEAR(bench.motor.feedback().torque_nm, -4.5, 2e-3);
   EXPECT_NEAR(bench.motor.feedback().current_a, -1.5 / (1.22 / std::numbers::sqrt2), 1e-3);
-  bench.now += milliseconds{20};
-  bench.run(0.3);
+  bench.runAfter(milliseconds{20}, 0.3);
   EXPECT_NEAR(bench.motor.feedback().total_angle_deg - before_deg, -0.1 * kDegPerRad, 0.02);
   EXPECT_FALSE(bench.motor.feedback().zeroed);  // behind a gear of its own the encoder is not absolute
 }

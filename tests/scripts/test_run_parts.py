@@ -175,15 +175,30 @@ def test_a_part_is_ended_with_what_it_has_started(write_parts: WriteParts, tmp_p
 
 
 def test_what_ends_has_time_to_clear_up(write_parts: WriteParts, tmp_path: Path) -> None:
-    begun, left = tmp_path / "begun", tmp_path / "left"
-    os.mkfifo(begun)
+    begun, cleaning, go_on = tmp_path / "begun", tmp_path / "cleaning", tmp_path / "go_on"
+    for fifo in (begun, cleaning, go_on):
+        os.mkfifo(fifo)
+    left = tmp_path / "left"
     left.touch()
-    # The clean-up is a process of its own, and another one ends before it does.
-    clear_up = f"sleep 0.2; sleep 0.2; rm {left}"
-    write_parts(lint=f"trap '{clear_up}; exit' TERM; sleep 30 & echo >{begun}; wait")
+    clean_up = f"echo >{cleaning}; read line <{go_on}; rm {left}"
+    write_parts(lint=f"trap 'sh -c \"{clean_up}\"; exit' TERM; sleep 30 & echo >{begun}; wait")
+    # First `sleep` ends, then the clean-up is there at another look, and only then it goes on.
+    wait_for_an_end = descendants.wait_for_an_end
+    looks: list[set[int]] = []
+
+    def wait(pids: set[int], timeout_s: float | None) -> None:
+        looks.append(pids)
+        if len(looks) == 2:
+            cleaning.read_text()
+            return
+        if len(looks) == 3:
+            go_on.write_text("go on")
+        wait_for_an_end(pids, timeout_s)
+
     run_of_parts = os.fork()
     if run_of_parts == 0:
         descendants.keep_orphans()
+        descendants.wait_for_an_end = wait
         run_parts.Run(["lint"], Budget("a test", 1.0, {}, {})).start_what_may()
         begun.read_text()
         descendants.end_descendants()

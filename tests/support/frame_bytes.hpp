@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "bus/byte_order.hpp"
 #include "bus/can_frame.hpp"
 #include "support/hex_bytes.hpp"
 
@@ -26,6 +28,14 @@ inline CanFrame frameOf(const std::string& text) {
   const auto hash = text.find('#');
   const auto id = static_cast<std::uint32_t>(std::stoul(text.substr(0, hash), nullptr, 16));
   return frameOf(CanId{id, hash > 3}, std::string_view(text).substr(hash + 1));
+}
+
+/// A frame with a little-endian number from that byte on.
+template <class Number>
+CanFrame frameOf(const std::string& text, std::size_t at, Number number) {
+  CanFrame frame = frameOf(text);
+  writeLittleEndian(frame.data, at, number);
+  return frame;
 }
 
 /// The other way round, of a standard frame.

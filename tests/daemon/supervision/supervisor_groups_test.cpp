@@ -68,6 +68,13 @@ class GroupTest : public ::testing::Test {
     return std::any_of(events.begin(), events.end(), [code](const Event& e) { return e.code == code; });
   }
 
+  void expectNoReturn() {
+    robot->run(20'000);
+    EXPECT_EQ(status(kLeft), MotorStatus::kReady);
+    EXPECT_EQ(status(kRight), MotorStatus::kReady);
+    EXPECT_FALSE(told(EventCode::kGroupRearmed));
+  }
+
   std::unique_ptr<VirtualRobot> robot;
 };
 
@@ -191,10 +198,7 @@ TEST_F(GroupTest, RearmAtRestWaitsUntilEveryMemberStandsStill) {
 TEST_F(GroupTest, AfterALongLossItWaitsForARequest) {
   start(GroupConfig::Return::kRearmAtRest);
   losePower(4000);
-  robot->run(20'000);
-  EXPECT_EQ(status(kLeft), MotorStatus::kReady);
-  EXPECT_EQ(status(kRight), MotorStatus::kReady);
-  EXPECT_FALSE(told(EventCode::kGroupRearmed));
+  expectNoReturn();
 }
 
 TEST_F(GroupTest, MembersThatAreLostTogetherAreEnabledTogether) {
@@ -256,10 +260,7 @@ TEST_F(GroupTest, AFaultOfAMemberEndsTheRearming) {
   foreignCommands();
   ASSERT_EQ(status(kLeft), MotorStatus::kFault);
   robot->orderFor(only(kLeft), Operation::kClear);
-  robot->run(20'000);
-  EXPECT_EQ(status(kLeft), MotorStatus::kReady);
-  EXPECT_EQ(status(kRight), MotorStatus::kReady);
-  EXPECT_FALSE(told(EventCode::kGroupRearmed));
+  expectNoReturn();
 }
 
 TEST_F(GroupTest, MembersThatStandWaitForOneThatIsLost) {
