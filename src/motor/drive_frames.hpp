@@ -79,7 +79,8 @@ struct DriveFrames {
 
 /// An action of this kind can only oppose motion, never cause it.
 [[nodiscard]] constexpr bool resists(FrameKind kind, const DriveFrames& frames) noexcept {
-  return kind == FrameKind::kDamp || (kind == FrameKind::kBrake && frames.brake_resists);
+  return kind == FrameKind::kDamp ||
+         (kind == FrameKind::kBrake && frames.brake_resists && frames.brake != Provision::kUnsupported);
 }
 
 /// Progress of the enable or disable sequence.

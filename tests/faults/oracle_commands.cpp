@@ -249,7 +249,7 @@ void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   const bool fast = std::fabs(seen.feedback.velocity_rpm) > reduced.velocity_rpm + reduced.tolerance_rpm;
   // An action that only resists is not taken away, and takes the place of a fallback that is dragged along.
   const bool resisted =
-      seen.acting == Acting::kDamp || (seen.acting == Acting::kBrake && frames.brake_resists);
+      seen.acting == Acting::kDamp || (seen.acting == Acting::kBrake && resists(FrameKind::kBrake, frames));
   const bool led = seen.target.mode == ControlMode::kCoast && motor.actions != only(FallbackAction::kCoast);
   if (reduced.velocity_rpm > 0.0F && mode_open_ && fast && led && resisted)
     motor.actions |= only(seen.acting == Acting::kDamp ? FallbackAction::kDamp : FallbackAction::kBrake);

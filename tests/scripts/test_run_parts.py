@@ -181,7 +181,9 @@ def test_what_ends_has_time_to_clear_up(write_parts: WriteParts, tmp_path: Path)
     left = tmp_path / "left"
     left.touch()
     clean_up = f"echo >{cleaning}; read line <{go_on}; rm {left}"
-    write_parts(lint=f"trap 'sh -c \"{clean_up}\"; exit' TERM; sleep 30 & echo >{begun}; wait")
+    # A child that is still the shell's copy would lose the signal.
+    child = f"sh -c 'echo >{begun}; exec sleep 30'"
+    write_parts(lint=f"trap 'sh -c \"{clean_up}\"; exit' TERM; {child} & wait")
     # First `sleep` ends, then the clean-up is there at another look, and only then it goes on.
     wait_for_an_end = descendants.wait_for_an_end
     looks: list[set[int]] = []

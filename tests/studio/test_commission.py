@@ -213,7 +213,7 @@ def test_after_a_gap_that_may_hide_a_turn_the_turn_by_hand_is_not_judged(
         "mono_us": time.monotonic_ns() // 1000,
         "severity": "warning",
     }
-    lost |= {"code": 102, "source": "wheel", "client": "", "text": "multi-turn angle lost"}
+    lost |= {"code": 102, "source": "wheel", "client": "", "text": "reference of the angle lost"}
     sockets[-1].send(json.dumps(lost))
     by_hand(studio, card, "wheel", 360)
     expect(card.locator(".live-angle")).to_contain_text(re.compile(r"3[56]\d\."))

@@ -29,7 +29,7 @@ namespace rc10::ctl {
 namespace {
 
 constexpr double kMostCurrentA = 20.0;
-// docs/lcm.md: multi-turn angle lost.
+// docs/lcm.md: reference of the angle lost.
 constexpr std::int32_t kReferenceLost = 102;
 constexpr Duration kSpinTime = std::chrono::seconds{1};
 /// The slowest state_hz is one a second.

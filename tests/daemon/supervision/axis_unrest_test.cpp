@@ -169,6 +169,10 @@ INSTANTIATE_TEST_SUITE_P(
         Dragged{"model: AK80-9, id: 5", "brake, brake_current_a: 1", Acting::kBrake},
         Dragged{"model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, velocity_limit_rpm: 600",
                 "brake, current_limit_a: 5", Acting::kNothing},
+        Dragged{"model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 100, feedback_hz: 500",
+                "ramp, brake_current_a: 1", Acting::kBrake},
+        Dragged{"model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 100, feedback_hz: 500",
+                "ramp, brake_current_a: 0", Acting::kNothing},
         Dragged{"model: LK-MG5010E-i10, id: 12", "brake, current_limit_a: 0.5", Acting::kNothing}));
 
 }  // namespace

@@ -46,6 +46,14 @@ TEST_F(FallbackTest, EachActionHasItsFrames) {
   EXPECT_EQ(frameKindOf(FallbackAction::kRamp), FrameKind::kCommand);
 }
 
+TEST_F(FallbackTest, ABrakeThatADriveLacksDoesNotResist) {
+  EXPECT_EQ(resistanceOf({.brake_resists = true}), FrameKind::kRest);
+  EXPECT_EQ(resistanceOf({.brake = Provision::kFrame}), FrameKind::kRest) << "a loop may push";
+  EXPECT_EQ(resistanceOf({.brake = Provision::kFrame, .brake_resists = true}), FrameKind::kBrake);
+  EXPECT_EQ(resistanceOf({.damp = Provision::kFrame, .brake = Provision::kFrame, .brake_resists = true}),
+            FrameKind::kDamp);
+}
+
 TEST_F(FallbackTest, ARampFallsEvenlyAndHasTimeToComeToRest) {
   begin(FallbackAction::kRamp);
   EXPECT_EQ(fallback.rampRpm(start), 100.0);
