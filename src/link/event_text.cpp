@@ -155,7 +155,8 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
   switch (EventCode{code}) {
     case kMotorStatus: return change<MotorStatus>(value, extra, client);
     case kCommandTimeout: return std::string("no valid command any more: ") + fallbackWord(value);
-    case kReferenceLost: return "reference of the angle lost: angle targets are refused until it is known again";
+    case kReferenceLost:
+      return "reference of the angle lost: angle targets are refused until it is known again";
     case kSetpointSkipped: return skipped(value, extra);
     case kNotOwner:
       return "command of '" + std::string(client) +
