@@ -190,8 +190,9 @@ class Remote : public Module_Base {
     // An e-stop ends what the switch has asked for, its own end enables nothing; so does a disable.
     const bool disabled = std::exchange(disables_, robot.disables()) != robot.disables();
     if (disabled || robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
-    // After a gap the switch counts from the second frame: it may have gone down.
-    const bool up = heard && armed_ && switch_up_.value_or(false);
+    // After a gap the switch counts from the second frame. It may be going down: it counts as up until two
+    // frames say so, and acts no more from the first on.
+    const bool up = heard && armed_ && switch_up_.value_or(false) && last_up_.value_or(false);
     if (up) arm(tick, robot);
     if (up || (heard && !arm_channel_)) command(robot);
     show(heard, age);
@@ -216,7 +217,9 @@ class Remote : public Module_Base {
     if (told_to_disable_ || tick.now - lost_since_ < disable_) return;
     told_to_disable_ = true;
     armed_ = false;
-    switch_known_ = false;  // it must go down and up once more
+    // It must go down and up once more.
+    switch_known_ = false;
+    last_up_ = switch_up_ = std::nullopt;
     robot.askAll(RobotRequest::kDisableUnasked);
     robot.report(kDisabled);
   }

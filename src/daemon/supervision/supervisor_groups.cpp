@@ -59,7 +59,7 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   const bool alone = alone_ && groupOf(*alone_) == &group;
   // One that somebody has tried alone, while another was missing all the time, is held on.
   const bool lost_while_held = (gone & ~std::exchange(group.gone, gone)).any() && group.held(axes_).any();
-  if (!alone && ((group.on(axes_) | group.dropped).any() || lost_while_held)) {
+  if ((!alone && (group.on(axes_) | group.dropped).any()) || lost_while_held) {
     if (gone.any()) {
       stopGroup(index, GroupStop::kLost, tick);
     } else if (group.refused.any()) {
@@ -87,6 +87,7 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
                  link::Name{robot_.motors()[static_cast<std::size_t>(source)].motor->name()}};
   group.rearm = group.dropped;
   for (const auto motor : group.motors) {
+    if (motor == alone_) continue;  // the others' loss is no news to who tries it
     if (axes_[motor].status() == MotorStatus::kActive) group.rearm.set(motor);
     if (event == MotorEvent::kDisable && isOn(axes_[motor].status())) group.rests_with_it.set(motor);
     if (reason == GroupStop::kLost && axes_[motor].holdsDisabled()) axes_[motor].stopHolding(tick);

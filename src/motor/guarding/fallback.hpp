@@ -95,9 +95,10 @@ class Fallback {
   /// This kind acts in its place from now on, and ends as it would have.
   void giveWay(FrameKind kind) noexcept { kind_ = then_ = kind; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
-  /// It damps, brakes or holds, and has for at least `time`; a ramp does not count.
+  /// It damps, brakes or holds, and has for at least `time`; a ramp does not count, nor what acts in its
+  /// place: it ends.
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {
-    return acts() && kind_ != FrameKind::kCommand && now - begun_ >= time;
+    return acts() && ends_ == MonotonicTime::max() && now - begun_ >= time;
   }
   /// Its motor is disabled though nobody asked for it: a load must not fall, so it acts on. What damps, or
   /// ends in damp, ends at standstill.

@@ -35,8 +35,8 @@ class ReducedMotion {
   enum class Motion : std::uint8_t { kNone, kResisted, kLed };
 
   /// Once a tick. The monitored time begins with the motion, with `reduced`, and after a resistance that
-  /// lasted. True: a motor that is led is faster than it may be, after the monitored time. Only where there
-  /// is any().
+  /// lasted, or under which a slow shaft became fast. True: a motor that is led is faster than it may be,
+  /// after the monitored time. Only where there is any().
   [[nodiscard]] bool step(bool reduced, Motion motion, const MotorFeedback& feedback,
                           const Tick& tick) noexcept;
   /// Whether anything is ever reduced.
@@ -48,9 +48,10 @@ class ReducedMotion {
   [[nodiscard]] float effortShare() const noexcept { return share_; }
 
  private:
-  [[nodiscard]] bool endsResistance(Motion motion, MonotonicTime now) noexcept;
-  void begin(float speed_rpm, MonotonicTime now) noexcept;
-  void reduce(float speed_rpm, const Tick& tick) noexcept;
+  [[nodiscard]] bool endsResistance(Motion motion, const MotorFeedback& feedback, MonotonicTime now) noexcept;
+  void begin(const MotorFeedback& feedback, MonotonicTime now) noexcept;
+  void reduce(const MotorFeedback& feedback, const Tick& tick) noexcept;
+  [[nodiscard]] bool fast(const MotorFeedback& feedback) const noexcept;
   void lift(float dt_s) noexcept;
   [[nodiscard]] bool tooFast(const MotorFeedback& feedback) noexcept;
 
@@ -62,7 +63,8 @@ class ReducedMotion {
   bool acts_ = false;        ///< Reduced, of a motor that moves.
   bool comes_down_ = false;  ///< Faster than it may be, within the monitored time.
   MonotonicTime since_{};
-  bool resisted_ = false;  ///< In the last tick.
+  bool resisted_ = false;       ///< In the last tick.
+  bool resisted_fast_ = false;  ///< It was already fast as the resistance began.
   MonotonicTime resisted_since_{};
   std::uint64_t samples_ = 0;
   int fast_samples_ = 0;

@@ -36,6 +36,8 @@ TEST_F(FallbackTest, ItActsFromItsBeginToItsEnd) {
   EXPECT_FALSE(fallback.resistsFor(1s, start + 1s));
   begin(FallbackAction::kRamp);
   EXPECT_FALSE(fallback.resistsFor(0s, start + 1s)) << "it leads";
+  fallback.giveWay(FrameKind::kDamp);
+  EXPECT_FALSE(fallback.resistsFor(0s, start + 1s)) << "it ends with the ramp";
 }
 
 TEST_F(FallbackTest, EachActionHasItsFrames) {

@@ -81,6 +81,26 @@ TEST_F(ReducedMotionTest, AClientThatLapsesNowAndThenDoesNotBeginTheTimeAnew) {
   EXPECT_EQ(motion.ceilingRpm(), 20.0);
 }
 
+TEST_F(ReducedMotionTest, ALapseHidesNoSampleOfADriveThatReportsSlowly) {
+  step(true, Motion::kLed, 180.0F, 1000);
+  int fast = 0;
+  for (int at_ms = 0; at_ms < 400 && fast == 0; ++at_ms) {
+    tick.now += 1ms;
+    if (at_ms % 20 == 0) ++feedback.samples;
+    if (motion.step(true, at_ms % 50 < 40 ? Motion::kLed : Motion::kResisted, feedback, tick)) fast = at_ms;
+  }
+  EXPECT_EQ(fast, 60) << "the third sample while it is led: at 0, 20, 60 ms";
+}
+
+TEST_F(ReducedMotionTest, ATargetAfterAShortLapseInWhichALoadSpunTheShaftUpHasTheWholeTime) {
+  step(true, Motion::kLed, 15.0F, 2000);
+  step(true, Motion::kResisted, 15.0F, 50);
+  step(true, Motion::kResisted, 90.0F, 300);
+  EXPECT_EQ(step(true, Motion::kLed, 90.0F, 990), 0);
+  EXPECT_EQ(motion.effortShare(), 1.0F);
+  EXPECT_NE(step(true, Motion::kLed, 90.0F, 20), 0);
+}
+
 TEST_F(ReducedMotionTest, AContactThatOpensAnewWhileItStillLiftsBrakesWithAllToo) {
   step(true, true, 0.0F, 10);
   step(false, true, 200.0F, 100);
