@@ -32,6 +32,10 @@ class ModeSet {
     rest.bits_ &= ~bit(mode);
     return rest;
   }
+  [[nodiscard]] constexpr ModeSet operator&(ModeSet other) const noexcept {
+    other.bits_ &= bits_;
+    return other;
+  }
   [[nodiscard]] constexpr std::uint32_t bits() const noexcept { return bits_; }
   [[nodiscard]] constexpr bool contains(ControlMode mode) const noexcept { return (bits_ & bit(mode)) != 0; }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/units.hpp"
-#include "module/shared_limit.hpp"
+#include "module/module_robot.hpp"
 #include "module/travel_of_motors.hpp"
 
 namespace rc10 {
@@ -125,7 +125,7 @@ class Feeder : public Module_Base {
 
   // A motor that reduced mode slows is not jammed.
   [[nodiscard]] double limitRpm(const ModuleRobot& robot) const noexcept {
-    return sharedLimitRpm(robot, std::span{&motor_, 1}, limit_rpm_);
+    return std::min(limit_rpm_, robot.speedCeilingRpm(motor_));
   }
 
   // `shots` is a count: each step up fires one. Its first value fires nothing.

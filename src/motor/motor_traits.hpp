@@ -36,9 +36,11 @@ struct MotorTraits {
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
   bool asked = false;  ///< Sends only answers: its feedback comes at the command rate.
-  /// An asked drive that is silent for longer may have restarted or turned too far to be followed; 0: not
-  /// judged, or with a limit of three periods or more.
+  /// An asked drive that is silent for longer may have restarted or turned too far to be followed; 0: no
+  /// limit that one lost answer could pass.
   Duration restart_silence{};
+  /// Key, also set on the drive, that lengthens it; empty: none.
+  std::string_view silence_key{};
   int samples_every = 1;     ///< Turns of an asked drive for each sample of its angle.
   bool fd = false;           ///< Speaks CAN FD.
   int data_bitrate = 0;      ///< Data phase of its CAN FD, as delivered; 0: unknown.
@@ -53,10 +55,11 @@ struct MotorTraits {
   /// Remedy, in words, where a loop of the drive may be at a limit of its current that is not seen; empty:
   /// seen.
   std::string_view unseen_limit_remedy{};
-  /// Key with the drive's own limit of the current, which its loops obey in place of current_limit_a.
+  /// Modes whose loop obeys the drive's own maximum of the current, not current_limit_a.
+  ModeSet own_loops{};
+  /// Key that tells that maximum: what is set on the drive, or current_limit_a, which is to be no higher.
   std::string_view own_limit_key{};
-  bool peak_known = false;       ///< Those loops obey the model's peak current unless that key is written.
-  ModeSet own_loops{};           ///< Modes whose loop obeys the drive's own maximum, not current_limit_a.
+  float own_peak_a = 0.0F;       ///< That maximum as delivered; 0: unknown.
   bool limit_by_report = false;  ///< A loop of the drive is seen at its limit by the current that it reports.
   bool yields = false;           ///< A loop that bounds a force, to be overpowered by a larger one.
 

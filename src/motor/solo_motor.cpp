@@ -40,7 +40,7 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
       gear_ratio_(gearRatioOf(settings, traits)),
       drive_per_output_(settings.direction < 0 ? -drive_turns : drive_turns),
       effort_limit_(effortLimitOf(settings, traits.effort_full_scale)),
-      effort_limit_given_(settings.effort_limit > 0.0F),
+      own_limit_a_(settings.own_limit_a),
       velocity_limit_rpm_(settings.velocity_limit_rpm),
       torque_nm_per_a_(traits.torque_nm_per_a * static_cast<float>(gear_ratio_ / traits.gear_ratio)),
       tick_period_(periodOf(settings.tick_hz)),
@@ -157,7 +157,7 @@ bool SoloMotor::currentAtLimit(double count_a) const noexcept {
 }
 
 bool SoloMotor::ownLoopAtLimit(double count_a) const noexcept {
-  return (effort_limit_given_ || traits_.peak_known) && currentAtLimit(reportable(effort_limit_), count_a);
+  return own_limit_a_ > 0.0F && currentAtLimit(reportable(own_limit_a_), count_a);
 }
 
 bool SoloMotor::currentAtLimit(double limit_a, double count_a) const noexcept {

@@ -102,8 +102,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   /// Whether the measured current is within 5 % of its limit, or of the end of what the drive can report;
   /// `count_a`: step of the field, A, the least margin.
   [[nodiscard]] bool currentAtLimit(double count_a) const noexcept;
-  /// The same of a loop that obeys the drive's own limit (MotorTraits::own_loops), which no derating lowers:
-  /// current_limit_a tells it; never without that.
+  /// The same of one of MotorTraits::own_loops, whose limit no derating lowers; never where it is unknown.
   [[nodiscard]] bool ownLoopAtLimit(double count_a) const noexcept;
   /// The same of another limit, A: that of the drive.
   [[nodiscard]] bool currentAtLimit(double limit_a, double count_a) const noexcept;
@@ -149,7 +148,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   double gear_ratio_;
   double drive_per_output_;  ///< Signed by the direction.
   float effort_limit_;
-  bool effort_limit_given_;  ///< Not the model's full scale.
+  float own_limit_a_;
   float velocity_limit_rpm_;
   float torque_nm_per_a_;
   Duration tick_period_;

@@ -111,5 +111,12 @@ TEST(ModeSet, ContainsWhatItWasMadeOf) {
   static_assert(!kSet.contains(ControlMode::kCurrent) && !ModeSet{}.contains(ControlMode::kCoast));
 }
 
+TEST(ModeSet, OfTwoHasTheModesThatAreInBoth) {
+  constexpr ModeSet kSome{ControlMode::kCoast, ControlMode::kVelocity, ControlMode::kDuty};
+  constexpr ModeSet kOthers{ControlMode::kVelocity, ControlMode::kDuty, ControlMode::kBrake};
+  static_assert((kSome & kOthers).bits() == ModeSet{ControlMode::kVelocity, ControlMode::kDuty}.bits());
+  static_assert((kSome & ModeSet{}).bits() == 0);
+}
+
 }  // namespace
 }  // namespace rc10::test::motor_base_test

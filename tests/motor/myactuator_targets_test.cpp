@@ -139,6 +139,36 @@ TEST_F(MyActuatorMotor, ATargetBeyondItsRangeOfAnglesOnlyDamps) {
   EXPECT_EQ(motor_.commandValue(), 0.0F);
 }
 
+// Neither the end of the field nor the limit of what is commanded is that of its loops.
+TEST_F(MyActuatorMotor, ALoopOfTheDriveIsAtItsOwnLimitOnlyWhereThatIsKnown) {
+  for (const float own_limit_a : {0.0F, 3.0F}) {
+    MotorSettings settings = settingsOf();
+    settings.effort_limit = 1.0F;
+    settings.own_limit_a = own_limit_a;
+    MyActuator_Motor motor = motorOf(settings);
+    const auto limitsAt = [&](const char* answer, ControlMode mode) {
+      for (CanFrame frame : {uptimeReply(1000), angleReply(1000), frameOf(answer)}) {
+        frame.received = now_;
+        (void)motor.updateFeedback(frame);
+      }
+      motor.order(FrameKind::kCommand, {.mode = mode, .value = 10.0});
+      now_ += std::chrono::milliseconds{1};
+      motor.update({.index = ++ticks_, .now = now_, .dt_s = 0.001F});
+      return motor.limits() & kLimitCurrent;
+    };
+    const auto at_limit = own_limit_a > 0.0F ? kLimitCurrent : 0U;
+    for (const auto mode : {ControlMode::kVelocity, ControlMode::kTotalAngle}) {
+      SCOPED_TRACE(toString(mode));
+      EXPECT_EQ(limitsAt("241#A21EC80000000000", mode), 0U) << "2 A";
+      EXPECT_EQ(limitsAt("241#A21E220100000000", mode), at_limit) << "2.9 A";
+      motor.derate(0.5F);
+      EXPECT_EQ(limitsAt("241#A21EC80000000000", mode), 0U) << "2 A, derated";
+      EXPECT_EQ(limitsAt("241#A21EDEFE00000000", mode), at_limit) << "-2.9 A, derated";
+      motor.derate(1.0F);
+    }
+  }
+}
+
 MotorSettings ofOneAmpere() {
   auto settings = settingsOf();
   settings.effort_limit = 1.0F;  // 3.125 N·m

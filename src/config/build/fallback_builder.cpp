@@ -23,7 +23,7 @@ namespace {
   return in.traits.frames.of(frameKindOf(action)) != Provision::kUnsupported;
 }
 
-// After a timeout it stays enabled: the end of a ramp is what it does without a target.
+// After on_timeout a motor stays enabled: a ramp ends in its idle, which has torque in some modes.
 [[nodiscard]] bool restsAfter(const MotorParse& in, std::string_view key, FallbackAction action) {
   return action != FallbackAction::kRamp || key != "on_timeout" || in.traits.frames.idle_rests;
 }

@@ -78,9 +78,9 @@ void checkFollowingError(MotorParse& in) {
 /// Period of the reported current. A drive that is asked tells it in each answer, its angle perhaps not.
 Duration currentPeriod(const MotorParse& in) {
   if (in.traits.signed_current_hz > 0) return periodOf(in.traits.signed_current_hz);
-  const MotorSettings& motor = in.draft.config.settings;
+  const MotorSettings& motor = in.motor();
   if (in.traits.asked) return motor.command_divider * periodOf(motor.tick_hz);
-  return periodOf(std::max(motor.feedback_hz > 0 ? motor.feedback_hz : in.traits.feedback_hz, 1));
+  return periodOf(motor.feedback_hz);
 }
 
 void checkStall(MotorParse& in) {
@@ -89,7 +89,7 @@ void checkStall(MotorParse& in) {
       std::chrono::duration_cast<std::chrono::milliseconds>(in.draft.config.guard.stall_time);
   if (!given || stall_ms.count() == 0) return;
   const std::string_view key = in.traits.own_limit_key;
-  if (!key.empty() && !in.motor().own_limit_known) {
+  if (!key.empty() && !in.settings.mentions(key)) {
     in.problems.error(given->place(), given->path,
                       "needs " + std::string{key} +
                           ": a stall is a current at the limit that the drive itself has; write what is set "
@@ -116,7 +116,7 @@ void checkRunaway(MotorParse& in, const GivenValue& given) {
                   std::string{in.traits.unseen_limit_remedy} +
                   ", or write an overspeed_rpm below its no-load speed instead");
   }
-  const bool known = in.traits.own_limit_key.empty() || in.motor().own_limit_known || in.traits.peak_known;
+  const bool known = in.traits.own_limit_key.empty() || in.motor().own_limit_a > 0.0F;
   const bool in_loops = seen && known;
   if (in_loops) return;
   in.problems.warning(given.place(), given.path,
@@ -154,8 +154,8 @@ void readRest(MotorParse& in) {
 
 void readGuard(MotorParse& in) {
   GuardConfig& guard = in.draft.config.guard;
-  in.motor().own_limit_known =
-      !in.traits.own_limit_key.empty() && in.settings.mentions(in.traits.own_limit_key);
+  in.motor().own_limit_a = in.traits.own_peak_a;
+  in.settings.read(in.traits.own_limit_key, in.motor().own_limit_a);
   guard.overspeed_rpm = defaultOverspeedRpm(in);
   guard.stall_rpm = static_cast<float>(kStall * in.noLoadRpm());
   in.settings.read("overspeed_rpm", guard.overspeed_rpm);

@@ -91,6 +91,10 @@ void readLoops(MotorParse& in) {
   in.motor().velocity_limit_rpm = in.motor().loops.velocity_limit_rpm;
 }
 
+std::string millisecondsText(Duration time) {
+  return numberText(std::round(std::chrono::duration<double, std::micro>(time).count()) / 1000.0) + " ms";
+}
+
 // One lost answer is no restart.
 void checkCommandSpacing(MotorParse& in) {
   const Duration silence = in.traits.restart_silence;
@@ -98,15 +102,20 @@ void checkCommandSpacing(MotorParse& in) {
   const auto spacing = in.motor().command_divider * period;
   // The answer after the lost one may be late by a tick.
   if (silence <= Duration::zero() || 2 * spacing + period <= silence) return;
+  const auto most = (silence / period - 1) / 2;
+  std::string remedy = "use at most " + std::to_string(most);
+  if (most < 1) {
+    remedy = "raise scheduler.rate_hz";
+    if (const auto key = in.traits.silence_key; !key.empty())
+      remedy += ", or " + std::string{key} + " here and on the drive";
+  }
   const auto given = in.settings.find("command_divider");
-  if (!given) return;  // the default, 1, is within it at every tick rate
-  in.problems.error(given->place(), given->path,
-                    given->text() + " asks the drive every " +
-                        numberText(std::chrono::duration<double, std::milli>(spacing).count()) +
-                        " ms: with one answer lost it is silent for so long that it may have restarted or "
+  in.problems.error(given ? given->place() : in.draft.config.place, given ? given->path : in.draft.path,
+                    (given ? given->text() : "command_divider 1, the default,") + " asks the drive every " +
+                        millisecondsText(spacing) +
+                        ": with one answer lost it is silent for so long that it may have restarted or "
                         "turned unseen (" +
-                        std::to_string(silence / std::chrono::milliseconds{1}) + " ms); use at most " +
-                        std::to_string(std::max<Duration::rep>((silence / period - 1) / 2, 1)));
+                        millisecondsText(silence) + "); " + remedy);
 }
 
 void readRates(MotorParse& in) {

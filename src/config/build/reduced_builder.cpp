@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config/build/shaping_builder.hpp"
+#include "config/mode_words.hpp"
 #include "config/yaml/number_text.hpp"
 
 namespace rc10 {
@@ -56,17 +57,6 @@ void readVelocity(MotorParse& in) {
                         "): each change would be a fault; raise one of the two");
 }
 
-/// Names of the modes with a loop that are in both sets.
-std::string wordsOf(ModeSet some, ModeSet others) {
-  std::string words;
-  for (const auto mode :
-       {ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty}) {
-    if (some.contains(mode) && others.contains(mode))
-      words += (words.empty() ? "" : ", ") + std::string{toString(mode)};
-  }
-  return words;
-}
-
 void readEffort(MotorParse& in) {
   const char* key = in.byVoltage() ? "reduced_voltage_v" : "reduced_current_a";
   const auto given = in.settings.find(key);
@@ -74,7 +64,7 @@ void readEffort(MotorParse& in) {
   float effort = 0.0F;
   in.settings.read(key, effort);
   const float limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
-  if (const std::string modes = wordsOf(in.traits.own_loops, in.traits.modes); !modes.empty()) {
+  if (const std::string modes = modesOf(in.traits.own_loops); !modes.empty()) {
     in.problems.warning(given->place(), given->path,
                         "does not act in " + modes +
                             ", whose loops in the drive obey its own maximum; lower that with the vendor's "

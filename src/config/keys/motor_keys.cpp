@@ -70,7 +70,11 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = kByModel, .above_min = true},
         .needs = kNeedsCurrent,
         .twin = "voltage_limit_v",
-        .about = "Largest current commanded. Default: the most there is, full scale of the drive."},
+        .about = "Largest current commanded. MyActuator in velocity and angle, and LK-Tech in angle, obey "
+                 "the drive's "
+                 "own maximum instead, for which `stall_ms` and `runaway_rpm` take this key: write no more "
+                 "than that. "
+                 "Default: the most there is, full scale of the drive."},
     Key{.name = "voltage_limit_v",
         .kind = kNumber,
         .unit = "V",

@@ -12,6 +12,7 @@
 #include "app/text_table.hpp"
 #include "bus/frame_text.hpp"
 #include "config/check/bus_load_check.hpp"
+#include "config/mode_words.hpp"
 #include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
 #include "module/serial_keys.hpp"
@@ -98,15 +99,6 @@ std::string robotText(const RobotConfig& config) {
                                        : std::string{", also in an e-stop"})});
   }
   return table.text();
-}
-
-std::string modesOf(ModeSet set) {
-  std::vector<std::string> modes;
-  for (int i = 0; i < kControlModeCount; ++i) {
-    const auto mode = static_cast<ControlMode>(i);
-    if (set.contains(mode)) modes.emplace_back(toString(mode));
-  }
-  return listWords(modes, ", ");
 }
 
 /// `share`: of the limit.
@@ -308,7 +300,8 @@ std::string modulesText(const RobotConfig& config) {
 /// One line for all motors that take the same modes.
 std::string modesText(const BusConfig& bus) {
   std::map<std::string, std::vector<std::string>> motors_by_modes;
-  for (const auto& motor : bus.motors) motors_by_modes[modesOf(motor.traits().modes)].push_back(motor.name());
+  for (const auto& motor : bus.motors)
+    motors_by_modes[modesOf(motor.traits().modes, ", ")].push_back(motor.name());
   std::string text;
   for (const auto& [modes, motors] : motors_by_modes) {
     text += "  modes of " + (motors_by_modes.size() == 1 ? "all" : listWords(motors)) + ": " + modes + "\n";

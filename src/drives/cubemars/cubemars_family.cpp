@@ -123,6 +123,8 @@ constexpr DriveFrames kMitV3Frames = kServoFrames;
 constexpr ModeSet kServoModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                               ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty,
                               ControlMode::kBrake};
+constexpr ModeSet kServoLoops{ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle,
+                              ControlMode::kDuty};
 constexpr ModeSet kMitModes{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                             ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kImpedance,
                             ControlMode::kBrake};
@@ -233,7 +235,7 @@ MotorTraits cubemarsTraits(const CubemarsSettings& own) {
   traits.reports_temperature = true;
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
   traits.signed_a = traits.frozen_a;
-  if (servo) traits.own_loops = kServoModes.without(ControlMode::kCurrent);
+  if (servo) traits.own_loops = kServoLoops;
   if (servo) traits.unseen_limit_remedy = "set the drive to MIT and write protocol: mit (V3: mit_v3)";
   traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
   traits.max_feedback_hz = mit ? 1000 : 500;

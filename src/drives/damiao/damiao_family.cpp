@@ -166,6 +166,7 @@ MotorTraits DamiaoFamily::traits(std::string_view name, const OwnValues& own) co
   traits.asked = true;
   traits.restart_silence =
       DamiaoPosition::longestSilence(scaleOf(model, own), damiaoFastestRadS(model, scaleOf(model, own)));
+  traits.silence_key = "p_max_rad";
   traits.fd = can_fd;
   traits.data_bitrate = can_fd ? 5'000'000 : 0;
   traits.classic_only = !can_fd;

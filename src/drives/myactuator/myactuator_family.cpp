@@ -80,7 +80,7 @@ class MyactuatorFamily final : public MotorFamily {
     traits.signed_a = traits.frozen_a;
     traits.limit_by_report = true;
     traits.own_limit_key = "current_limit_a";
-    traits.peak_known = model.rated_rpm > 0.0F;
+    traits.own_peak_a = model.rated_rpm > 0.0F ? model.peak_current_a : 0.0F;
     traits.own_loops = ModeSet{ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle};
     traits.scaled_speed = true;  // of the motion mode
     traits.asked = true;

@@ -130,6 +130,8 @@ constexpr ModeSet kVescModes{ControlMode::kCoast, ControlMode::kCurrent, Control
 constexpr ModeSet kVescModesWithAngle{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                                       ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kDuty,
                                       ControlMode::kBrake};
+constexpr ModeSet kVescLoops{ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle,
+                             ControlMode::kDuty};
 
 // Only the angle loop runs on the host: its output is a speed. 1.5 rpm/deg is a crossover of 9 rad/s, which
 // leaves 75 degrees of phase for one sample of delay and the wait for the tick at 50 Hz.
@@ -275,12 +277,12 @@ MotorTraits vescTraits(const VescSettings& own) {
   traits.signed_a = own.motor_current_max_a;
   traits.own_limit_key = "motor_current_max_a";
   traits.limit_by_report = true;
-  traits.own_loops = kVescModesWithAngle.without(ControlMode::kCurrent);
   traits.asked = false;
   traits.watchdog = own.ask_status;
   traits.reports_angle = own.angle != VescAngle::kNone;
   traits.modes = own.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
   if (!(own.brake_current_a > 0.0F)) traits.modes = traits.modes.without(ControlMode::kBrake);
+  traits.own_loops = traits.modes & kVescLoops;
   static constexpr DriveSetup kSetup{.tool = "VESC Tool (the simple CAN commands write no settings)"};
   traits.setup = &kSetup;
   traits.frames = {.rest = Provision::kFrame,

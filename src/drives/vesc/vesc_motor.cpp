@@ -60,7 +60,6 @@ VESC_Motor::VESC_Motor(const MotorSettings& settings)
     : SoloMotor(settings, vescTraits(vescSettings(settings.own)),
                 reportedTurns(settings, vescSettings(settings.own))),
       own_(vescSettings(settings.own)),
-      own_limit_known_(settings.own_limit_known),
       id_(settings.id),
       rotor_per_output_(get_GearRatio() * static_cast<double>(direction())),
       patience_(std::max(kShortestPatience, kPatiencePeriods * feedbackPeriod())),
@@ -153,9 +152,7 @@ void VESC_Motor::followCurrent(const Target& target) noexcept {
 
 // The drive's loops know nothing of current_limit_a.
 void VESC_Motor::seeOwnLimit() noexcept {
-  if (own_limit_known_ &&
-      currentAtLimit(static_cast<double>(own_.motor_current_max_a), vesc::kAmperesPerCount))
-    limits_ |= kLimitCurrent;
+  if (ownLoopAtLimit(vesc::kAmperesPerCount)) limits_ |= kLimitCurrent;
 }
 
 void VESC_Motor::setVelocity(double rpm) noexcept {

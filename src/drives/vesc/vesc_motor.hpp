@@ -83,7 +83,6 @@ class VESC_Motor : public SoloMotor {
   [[nodiscard]] bool standsStill() noexcept;
 
   VescSettings own_;
-  bool own_limit_known_;  ///< motor_current_max_a is written, not a default.
   int id_;
   double rotor_per_output_;  ///< Signed by the direction.
   Duration patience_;        ///< Older feedback than this closes no loop.

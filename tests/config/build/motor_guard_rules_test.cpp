@@ -152,6 +152,23 @@ TEST(MotorGuardRules, NoFamilyTakesTheEndOfAFieldForTheLimitOfTheDrivesLoops) {
   EXPECT_EQ(reasonOf("model: LK-MF9025, id: 1, group: true, stall_ms: 300"), "") << "currents alone";
 }
 
+// As written, else as the model is delivered where that is known.
+TEST(MotorGuardRules, TheLimitOfTheDrivesLoopsIsOneNumber) {
+  const auto limitOf = [](const std::string& keys) { return watchedMotor(keys).settings.own_limit_a; };
+  const std::string vesc = "model: VESC, pole_pairs: 7, velocity_limit_rpm: 600, current_limit_a: 4";
+  const std::string lktech = "model: LK-MF9025, velocity_limit_rpm: 300";
+  EXPECT_EQ(limitOf(vesc), 0.0F);
+  EXPECT_EQ(limitOf(vesc + ", motor_current_max_a: 5"), 5.0F);
+  EXPECT_EQ(limitOf(lktech), 0.0F);
+  EXPECT_EQ(limitOf(lktech + ", current_limit_a: 5"), 5.0F);
+  EXPECT_EQ(limitOf("model: LK-MF9025, group: true, velocity_limit_rpm: 300, current_limit_a: 5"), 0.0F);
+  EXPECT_EQ(limitOf("model: RMD-X8-20"), watchedMotor("model: RMD-X8-20").traits().effort_full_scale);
+  EXPECT_EQ(limitOf("model: RMD-X8-20, current_limit_a: 5"), 5.0F);
+  EXPECT_EQ(limitOf("model: RMD-X"), 0.0F) << "of an unknown model";
+  EXPECT_EQ(limitOf("model: RMD-X, current_limit_a: 5"), 5.0F);
+  EXPECT_EQ(limitOf("model: M3508, current_limit_a: 5"), 0.0F) << "has no such loop";
+}
+
 TEST(MotorGuardRules, ALoopThatYieldsHasNoRunaway) {
   const std::string gripper = "{name: a, model: DM4340, id: 1, master_id: 17, control: force_position";
   EXPECT_EQ(motorOf(gripper + "}").guard.runaway_rpm, 0.0F);

@@ -430,6 +430,29 @@ TEST(MotorRules, ADriveThatOnlyAnswersIsAskedBeforeItsSilenceIsARestart) {
   EXPECT_EQ(judged, 2);
 }
 
+// At 100 Hz one lost answer is a silence of 30 ms; this drive may turn by 0.8 PMAX in 24 ms.
+TEST(MotorRules, ADriveThatNoDividerCouldAskOftenEnoughIsRefusedWithOrWithoutOne) {
+  const auto errorsAt = [](int rate_hz, const std::string& keys) {
+    return errorsOf("scheduler: {rate_hz: " + std::to_string(rate_hz) + "}\n" +
+                    robotWith("{name: a, model: DM4310, id: 1, master_id: 17, watchdog_ms: 1000, "
+                              "v_max_rad_s: 100, " +
+                              keys + "}"));
+  };
+  const std::string wrong =
+      " asks the drive every 10 ms: with one answer lost it is silent for so long that it may have restarted "
+      "or turned unseen (24 ms); raise scheduler.rate_hz, or p_max_rad here and on the drive";
+  EXPECT_THAT(errorsAt(100, "p_max_rad: 3"),
+              ElementsAre("hero.yaml:7:9: buses[0].motors[0]: command_divider 1, the default," + wrong));
+  EXPECT_THAT(errorsAt(100, "p_max_rad: 3, command_divider: 1"),
+              ElementsAre(EndsWith("buses[0].motors[0].command_divider: 1" + wrong)));
+  EXPECT_THAT(errorsAt(100, "p_max_rad: 3, command_divider: 2"),
+              ElementsAre(AllOf(HasSubstr("command_divider: 2 asks the drive every 20 ms"),
+                                EndsWith("; raise scheduler.rate_hz, or p_max_rad here and on the drive"))));
+  EXPECT_THAT(errorsAt(100, "p_max_rad: 4"), IsEmpty());
+  EXPECT_THAT(errorsAt(200, "p_max_rad: 3"), IsEmpty());
+  EXPECT_THAT(errorsAt(200, "p_max_rad: 3, command_divider: 2"), ElementsAre(EndsWith("; use at most 1")));
+}
+
 TEST(MotorRules, APayloadHasAnArm) {
   EXPECT_THAT(
       errorsOfWheel("simulated: {payload_kg: 1}"),

@@ -1,9 +1,13 @@
 // mode_gpio and the limits that it reduces.
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 #include "config/config_text.hpp"
+#include "config/motor_families.hpp"
 #include "config/report/report.hpp"
+#include "support/own_defaults.hpp"
 
 namespace rc10::test::reduced_rules_test {
 namespace {
@@ -115,13 +119,39 @@ TEST(ReducedRules, LoopsThatObeyNoLimitOfOursAreTold) {
   };
   EXPECT_THAT(
       warnings("VESC, id: 1, pole_pairs: 7"),
-      HasSubstr("does not act in velocity, angle, total_angle, duty, whose loops in the drive obey its own"));
-  EXPECT_THAT(warnings("AK80-9, id: 1"), HasSubstr("does not act in velocity, angle, total_angle, duty,"));
-  EXPECT_THAT(warnings("RMD-X8-25, id: 1"), HasSubstr("does not act in velocity, angle, total_angle, whose"));
-  EXPECT_THAT(warnings("LK-MG5010E-i10, id: 1"), HasSubstr("does not act in angle, total_angle, whose"));
+      HasSubstr(
+          "does not act in velocity, angle, total_angle and duty, whose loops in the drive obey its own"));
+  EXPECT_THAT(warnings("VESC, id: 1, pole_pairs: 7, angle: none"),
+              HasSubstr("does not act in velocity and duty, whose"));
+  EXPECT_THAT(warnings("AK80-9, id: 1"), HasSubstr("does not act in velocity, angle, total_angle and duty,"));
+  EXPECT_THAT(warnings("RMD-X8-25, id: 1"),
+              HasSubstr("does not act in velocity, angle and total_angle, whose"));
+  EXPECT_THAT(warnings("LK-MG5010E-i10, id: 1"), HasSubstr("does not act in angle and total_angle, whose"));
   for (const std::string bounded :
        {"M3508, id: 1", "AK80-9, id: 1, protocol: mit", "RS03, id: 1", "LK-MG5010E-i10, id: 1, group: true"})
     EXPECT_THAT(warnings(bounded), Not(HasSubstr("does not act in"))) << bounded;
+}
+
+TEST(ReducedRules, EveryLoopThatObeysTheDrivesMaximumIsAModeWithALoop) {
+  constexpr ModeSet kLoops{ControlMode::kVelocity, ControlMode::kAngle, ControlMode::kTotalAngle,
+                           ControlMode::kImpedance, ControlMode::kDuty};
+  int judged = 0;
+  for (const auto& entry : motorFamilies()) {
+    for (const auto& model : entry.family->models()) {
+      for (const auto& key : entry.family->keys()) {
+        const std::size_t values = key.kind == OwnKey::Kind::kFlag ? 2 : key.choices.size();
+        for (std::size_t value = 0; value < values; ++value) {
+          OwnValues own = ownDefaults(*entry.family);
+          own.set(key.name, static_cast<double>(value));
+          const auto traits = entry.family->traits(model, own);
+          EXPECT_EQ((traits.own_loops & traits.modes & kLoops).bits(), traits.own_loops.bits())
+              << model << ' ' << key.name << ' ' << value;
+          judged += traits.own_loops.bits() != 0 ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(judged, 0);
 }
 
 TEST(ReducedRules, TheRampFitsIntoTheTime) {
