@@ -11,10 +11,13 @@ constexpr int kStoringTries = 3;
 constexpr Duration kSettling = std::chrono::milliseconds{10};
 constexpr Duration kSettingPatience = std::chrono::milliseconds{50};
 // A drive at rest gets a frame in every tick or two. Without an answer for this time it no longer has
-// this id.
+// this id, or is gone.
 constexpr Duration kSilence = std::chrono::milliseconds{250};
 // Damiao: 40 to 100 ms.
 constexpr Duration kStoring = std::chrono::milliseconds{300};
+// First try in silence: with kSettling half of a RobStride's restart_silence, so that a save frame which was
+// lost costs no reference.
+constexpr Duration kStoringInSilence = std::chrono::milliseconds{90};
 constexpr double kSame = 1e-4;
 
 }  // namespace
@@ -55,8 +58,13 @@ void DriveConfiguring::end(Progress progress) noexcept {
 }
 
 bool DriveConfiguring::wantsSilence() const noexcept {
-  return codec_.setup().saves_in_silence &&
-         (phase_ == Phase::kBeforeSave || phase_ == Phase::kSave || phase_ == Phase::kSaving);
+  return codec_.setup().saves_in_silence && (phase_ == Phase::kSave || phase_ == Phase::kSaving);
+}
+
+bool DriveConfiguring::excusesSilence() const noexcept {
+  if (phase_ == Phase::kSaving || phase_ == Phase::kUnsaved) return true;
+  const bool written = phase_ == Phase::kWritten || phase_ == Phase::kRead;
+  return wantsSilence() || (codec_.setup().stores_at_once && written && !changesIdentity());
 }
 
 void DriveConfiguring::rename() noexcept {
@@ -64,25 +72,30 @@ void DriveConfiguring::rename() noexcept {
   if (codec_.idSetting() == value().setting) new_id_ = static_cast<int>(value().value);
 }
 
-void DriveConfiguring::next() noexcept {
+void DriveConfiguring::enter(Phase phase, MonotonicTime now) noexcept {
+  phase_ = phase;
+  sent_at_ = now;
+}
+
+void DriveConfiguring::next(MonotonicTime now) noexcept {
   tries_ = 0;
   if (index_ + 1 < write_.count) {
     ++index_;
     phase_ = Phase::kWrite;
   } else if (write_.save && !codec_.setup().stores_at_once) {
-    phase_ = codec_.setup().saves_in_silence ? Phase::kBeforeSave : Phase::kSave;
+    enter(Phase::kSave, now);
   } else {
     end(Progress::kDone);
   }
 }
 
 void DriveConfiguring::lookForReading(MonotonicTime now) noexcept {
-  if (asWritten()) return next();
+  if (asWritten()) return next(now);
   if (changesIdentity()) {
     if (now - sent_at_ < kSilence) return;
     if (!heard_) {
       rename();
-      return next();
+      return next(now);
     }
   } else if (!reading_ && now - sent_at_ < kSettingPatience) {
     return;
@@ -96,15 +109,23 @@ void DriveConfiguring::lookForReading(MonotonicTime now) noexcept {
 }
 
 void DriveConfiguring::lookForSaving(MonotonicTime now) noexcept {
-  // Under its new id it is not heard.
   if (saved_) return end(Progress::kDone);
-  if (now - sent_at_ < kStoring) return;
+  const bool quick = codec_.setup().saves_in_silence && tries_ == 1;
+  if (now - sent_at_ < (quick ? kStoringInSilence : kStoring)) return;
+  // Under its new id it is not heard.
   if (renamed_) return end(Progress::kDone);
   if (tries_ < kStoringTries) {
-    phase_ = Phase::kSave;
+    enter(Phase::kUnsaved, now);
+    lookForLife(now);
   } else {
     end(Progress::kNotSaved);
   }
+}
+
+// A drive that is not heard takes no save frame either, and may be lost.
+void DriveConfiguring::lookForLife(MonotonicTime now) noexcept {
+  if (heard_) return enter(Phase::kSave, now);
+  if (now - sent_at_ >= kSilence) end(Progress::kNotSaved);
 }
 
 void DriveConfiguring::look(MonotonicTime now) noexcept {
@@ -114,7 +135,7 @@ void DriveConfiguring::look(MonotonicTime now) noexcept {
       break;
     case Phase::kRead: lookForReading(now); break;
     case Phase::kSaving: lookForSaving(now); break;
-    case Phase::kBeforeSave:
+    case Phase::kUnsaved: lookForLife(now); break;
     case Phase::kWrite:
     case Phase::kSave:
     case Phase::kEnded: break;
@@ -136,10 +157,6 @@ std::size_t DriveConfiguring::pack(MonotonicTime now, std::span<CanFrame> out) n
       frame = codec_.read(value().setting);
       if (frame) phase_ = Phase::kRead;
       break;
-    case Phase::kBeforeSave:
-      phase_ = Phase::kSave;
-      sent_at_ = now;
-      return 0;
     case Phase::kSave:
       if (codec_.setup().saves_in_silence && now - sent_at_ < kSettling) return 0;
       frame = codec_.save(new_id_);
@@ -148,6 +165,7 @@ std::size_t DriveConfiguring::pack(MonotonicTime now, std::span<CanFrame> out) n
       break;
     case Phase::kRead:
     case Phase::kSaving:
+    case Phase::kUnsaved:
     case Phase::kEnded: break;
   }
   if (!frame) return 0;

@@ -35,13 +35,16 @@ class DriveConfiguring {
   /// Nothing else may be sent to the drive, which is at rest: the next frame of it is the answer to the save
   /// frame.
   [[nodiscard]] bool wantsSilence() const noexcept;
+  /// The drive writes its flash, or is sent nothing: until it is heard again, or 0.6 s have passed, its
+  /// silence does not say that it is gone.
+  [[nodiscard]] bool excusesSilence() const noexcept;
 
   [[nodiscard]] Progress progress() const noexcept { return progress_; }
   /// Which of the values it is at, or failed at.
   [[nodiscard]] std::size_t index() const noexcept { return index_; }
 
  private:
-  enum class Phase : std::uint8_t { kWrite, kWritten, kRead, kBeforeSave, kSave, kSaving, kEnded };
+  enum class Phase : std::uint8_t { kWrite, kWritten, kRead, kSave, kSaving, kUnsaved, kEnded };
 
   [[nodiscard]] const DriveValue& value() const noexcept { return write_.values[index_]; }
   [[nodiscard]] bool changesIdentity() const noexcept;
@@ -49,7 +52,9 @@ class DriveConfiguring {
   void look(MonotonicTime now) noexcept;
   void lookForReading(MonotonicTime now) noexcept;
   void lookForSaving(MonotonicTime now) noexcept;
-  void next() noexcept;
+  void lookForLife(MonotonicTime now) noexcept;
+  void next(MonotonicTime now) noexcept;
+  void enter(Phase phase, MonotonicTime now) noexcept;
   /// The drive no longer answers under its old identity.
   void rename() noexcept;
   void end(Progress progress) noexcept;
@@ -60,7 +65,7 @@ class DriveConfiguring {
   Phase phase_ = Phase::kEnded;
   std::size_t index_ = 0;
   int tries_ = 0;
-  MonotonicTime sent_at_{};
+  MonotonicTime sent_at_{};  ///< Last frame to the drive, or last enter().
   std::optional<double> reading_;
   bool heard_ = false;  ///< Any frame of the drive since the last one to it.
   bool saved_ = false;

@@ -197,6 +197,7 @@ void ServoDrive::answer(const CanFrame& frame) noexcept {
 }
 
 std::size_t ServoDrive::answers(std::span<CanFrame> out) noexcept {
+  if (stores()) return 0;
   const std::size_t count = std::min(answer_count_, out.size());
   std::copy_n(answers_.begin(), count, out.begin());
   answer_count_ = 0;

@@ -67,6 +67,9 @@ class ServoDrive : public Drive {
   [[nodiscard]] Duration elapsed() const noexcept { return elapsed_; }
   /// To be part of the next answers(); what is too much is lost.
   void answer(const CanFrame& frame) noexcept;
+  /// It writes its flash for 50 ms, hears nothing meanwhile, and answers afterwards.
+  void store() noexcept { stored_at_ = elapsed_ + std::chrono::milliseconds{50}; }
+  [[nodiscard]] bool stores() const noexcept { return elapsed_ < stored_at_; }
 
  private:
   enum class Mode : std::uint8_t { kReleased, kCurrent, kVoltage, kTorque, kVelocity, kPosition, kImpedance };
@@ -82,6 +85,7 @@ class ServoDrive : public Drive {
   std::vector<FrameFilter> sends_;
   MotorPhysics physics_;
   Duration elapsed_{};
+  Duration stored_at_{};
   Mode mode_ = Mode::kReleased;
   double value_ = 0.0;
   double value_rpm_ = 0.0;

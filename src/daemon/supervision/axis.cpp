@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/angle.hpp"
+#include "motor/drive_configuring.hpp"
 
 namespace rc10 {
 namespace {
@@ -89,11 +90,18 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   return !bus_.held;
 }
 
+// Only at rest: nothing is written to a drive that is on.
+bool Axis::silenceExcused() noexcept {
+  if (isOn(status_) || fallback_.acts()) return false;
+  const auto* const configuring = motor_.driveConfiguring();
+  return configuring != nullptr && configuring->excusesSilence();
+}
+
 // A sample of a pause could not be heard earlier. One pause is forgiven: later ones would hide a computer
 // that never runs in time.
 void Axis::goUnheard(bool came, const Since& since) noexcept {
   const bool could_speak = !since.simulation_late || !bus_.simulated;
-  if (could_speak) unheard_ += since.ran;
+  if (could_speak && !silenceExcused()) unheard_ += since.ran;
   if (!came || !(motor_.feedback().received > since.before)) return;
   if (!pause_forgiven_) unheard_ = {};
   pause_forgiven_ = true;

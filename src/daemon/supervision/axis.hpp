@@ -137,6 +137,8 @@ class Axis {
  private:
   /// Unheard in this tick. Not inlined: listen() is short without it.
   [[gnu::noinline]] void goUnheard(bool came, const Since& since) noexcept;
+  /// Its drive stores settings, and may be silent meanwhile.
+  [[nodiscard]] bool silenceExcused() noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
   /// Speed and effort of reduced mode for this tick. True: it is faster than it may be, and no resistance can
   /// take the place of what acts. Few motors have it.
@@ -188,9 +190,10 @@ class Axis {
   bool reference_known_ = false;  ///< In the last tick.
   std::uint64_t losses_ = 0;      ///< Losses of its reference, up to the last tick.
   std::uint64_t samples_ = 0;     ///< Count of its feedback in the last tick.
-  Duration unheard_{};            ///< Time since it was heard; a pause of this thread is two periods of it.
-  bool pause_forgiven_ = false;   ///< Since it was heard.
-  bool on_when_heard_ = false;    ///< ENABLING or ACTIVE when it was heard.
+  Duration unheard_{};           ///< Time since it was heard, less what is excused; a pause of this thread is
+                                 ///< two periods of it.
+  bool pause_forgiven_ = false;  ///< Since it was heard.
+  bool on_when_heard_ = false;   ///< ENABLING or ACTIVE when it was heard.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.

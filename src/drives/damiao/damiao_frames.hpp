@@ -59,6 +59,7 @@ enum class Register : std::uint8_t {
 inline constexpr std::uint8_t kReadOperation = 0x33;
 inline constexpr std::uint8_t kWriteOperation = 0x55;
 inline constexpr std::uint8_t kSaveOperation = 0xAA;
+inline constexpr std::uint8_t kStateOperation = 0xCC;  ///< Asks for the state.
 
 /// The status in feedback. Those from kFirstFault on are faults.
 inline constexpr std::uint8_t kStatusDisabled = 0;

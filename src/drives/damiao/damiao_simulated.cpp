@@ -18,7 +18,6 @@ using damiao::Register;
 
 namespace {
 
-constexpr std::uint8_t kStateOperation = 0xCC;
 constexpr std::uint8_t kDriveC = 30;
 constexpr auto kTimeoutStep = std::chrono::microseconds{50};
 
@@ -97,7 +96,7 @@ void DamiaoDrive::fault(std::uint32_t native_code) noexcept {
 }
 
 void DamiaoDrive::receive(const CanFrame& frame) noexcept {
-  if (frame.type != FrameType::kData || frame.id.extended || (frame.fd && !own_.can_fd)) return;
+  if (frame.type != FrameType::kData || frame.id.extended || (frame.fd && !own_.can_fd) || stores()) return;
   const auto payload = std::span(frame.data).first<8>();
   if (frame.id.value == damiao::kRegisterId && frame.length >= 4 && payload[0] == id_ && payload[1] == 0) {
     receiveRegister(payload);
@@ -211,9 +210,10 @@ void DamiaoDrive::receiveRegister(std::span<const std::uint8_t, 8> payload) noex
   if (payload[2] == damiao::kSaveOperation) {
     if (armed_) return;
     saved_ = registers_;
+    store();
     return send(damiao::saveRegisters(id_));
   }
-  if (payload[2] == kStateOperation) return sendState();
+  if (payload[2] == damiao::kStateOperation) return sendState();
   if (payload[2] != damiao::kReadOperation) return;
   std::uint32_t value = 0;
   const auto& scale = registers_.scale;

@@ -114,7 +114,7 @@ void RobstrideDrive::fault(std::uint32_t native_code) noexcept {
 void RobstrideDrive::receive(const CanFrame& frame) noexcept {
   const bool mine = frame.id.extended && !frame.fd && frame.type == FrameType::kData && frame.length == 8 &&
                     (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(codec_.drive_id);
-  if (!mine) return;
+  if (!mine || stores()) return;
   heard_at_ = elapsed();
   const auto bytes = frame.payload();
   const auto type = static_cast<robstride::Type>(frame.id.value >> 24U & 0x1FU);
@@ -177,6 +177,7 @@ void RobstrideDrive::write(const CanFrame& frame) noexcept {
 // Run mode and references are no settings: they start anew.
 void RobstrideDrive::save() noexcept {
   if (model_->cyber_gear) return;
+  store();
   for (auto& each : parameters_) {
     const bool reference = each.index == parameter::kRunMode || each.index == parameter::kCurrentRef ||
                            each.index == parameter::kVelocityRef || each.index == parameter::kPositionRef;

@@ -1,0 +1,174 @@
+// A drive that stores settings may be silent meanwhile, because it writes its flash or is sent nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "config/motor_families.hpp"
+#include "daemon/supervision/one_motor.hpp"
+#include "motor/drive_configuring.hpp"
+
+namespace rc10::test::axis_storing_test {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// One that can store a setting without becoming another drive, at rest.
+class StoringDrive {
+ public:
+  explicit StoringDrive(const std::string& keys) {
+    const auto outcome = OneMotor::parse(keys);
+    EXPECT_TRUE(outcome.config) << outcome.errorText();
+    config_ = outcome.config.value_or(twoWheelsAndYaw());
+    robot = std::make_unique<VirtualRobot>(config_);
+    for (int i = 0; i < 4000 && seen().status != MotorStatus::kReady; ++i) robot->tick();
+    robot->run(100);
+    EXPECT_EQ(seen().status, MotorStatus::kReady);
+    EXPECT_TRUE(seen().feedback.zeroed);
+    (void)robot->events();
+  }
+
+  void begin() {
+    Order order;
+    order.id = 77;
+    order.operation = Operation::kConfigure;
+    order.motors.set(0);
+    order.drive = timeoutOf500Ms();
+    ASSERT_TRUE(robot->exchange().orders.push(order));
+  }
+  [[nodiscard]] const DriveSetup& setup() const { return *config_.buses[0].motors[0].traits().setup; }
+  [[nodiscard]] DriveWrite timeoutOf500Ms() const {
+    const auto& settings = setup().settings;
+    const auto found = std::find_if(settings.begin(), settings.end(),
+                                    [](const DriveSetting& each) { return each.name == "timeout_ms"; });
+    EXPECT_NE(found, settings.end());
+    DriveWrite write;
+    write.values[0] = {static_cast<std::uint8_t>(found - settings.begin()), 500.0};
+    write.count = 1;
+    write.save = true;
+    return write;
+  }
+  bool answered() { return robot->exchange().results.pop(result); }
+  [[nodiscard]] DriveConfiguring& configuring() {
+    return *robot->robot().motors()[0].motor->driveConfiguring();
+  }
+  /// Until its silence is excused.
+  void tickUntilItStores() {
+    for (int i = 0; i < 500 && !configuring().excusesSilence(); ++i) robot->tick();
+    ASSERT_TRUE(configuring().excusesSilence());
+  }
+  const MotorSnapshot& seen() { return robot->motor(0); }
+  [[nodiscard]] Duration age() { return robot->now() - seen().feedback.received; }
+
+  std::unique_ptr<VirtualRobot> robot;
+  OrderResult result;
+
+ private:
+  RobotConfig config_;
+};
+
+/// The first model of each family that has such a setting.
+std::vector<std::string> storingDrives() {
+  std::vector<std::string> found;
+  for (const auto& entry : motorFamilies()) {
+    for (const auto model : entry.family->models()) {
+      std::string keys = "model: " + std::string{model} + ", id: 1, zero: power_on";
+      if (entry.family->name() == "Damiao") keys += ", master_id: 17";
+      const auto outcome = OneMotor::parse(keys);
+      if (!outcome.config) continue;
+      const auto* const setup = outcome.config->buses[0].motors[0].traits().setup;
+      if (setup == nullptr || setup->settings.size() < 2) continue;  // a CyberGear has its id alone
+      found.push_back(keys);
+      break;
+    }
+  }
+  return found;
+}
+
+class StoringDriveTest : public ::testing::TestWithParam<std::string> {};
+
+TEST(StoringDrives, AreThoseOfEachFamilyWithSettings) {
+  std::set<std::string> families;
+  for (const auto& keys : storingDrives()) {
+    const auto outcome = OneMotor::parse(keys);
+    families.emplace(outcome.config->buses[0].motors[0].family->name());
+  }
+  EXPECT_EQ(families, (std::set<std::string>{"Damiao", "MyActuator", "RobStride"}));
+}
+
+TEST_P(StoringDriveTest, StaysReadyWithItsReference) {
+  StoringDrive drive{GetParam()};
+  drive.begin();
+  Duration oldest{};
+  int ticks = 0;
+  for (; ticks < 1000 && !drive.answered(); ++ticks) {
+    drive.robot->tick();
+    ASSERT_EQ(drive.seen().status, MotorStatus::kReady) << ticks;
+    ASSERT_TRUE(drive.seen().feedback.zeroed) << ticks;
+    oldest = std::max(oldest, drive.age());
+  }
+  ASSERT_LT(ticks, 1000);
+  EXPECT_EQ(drive.result.motors[0], Refusal::kNone);
+  if (!drive.setup().stores_at_once) {
+    EXPECT_GE(oldest, milliseconds{50}) << "the simulated drive is silent while it stores";
+  }
+  EXPECT_TRUE(drive.robot->events().empty());
+}
+
+TEST_P(StoringDriveTest, StaysReadyWhenItsAnswerIsLost) {
+  StoringDrive drive{GetParam()};
+  drive.begin();
+  drive.tickUntilItStores();
+  drive.robot->simBus().silence(0, true);
+  for (int i = 0; i < 60; ++i) {
+    drive.robot->tick();
+    ASSERT_EQ(drive.seen().status, MotorStatus::kReady) << i;
+  }
+  drive.robot->simBus().silence(0, false);
+  int ticks = 0;
+  for (; ticks < 2000 && !drive.answered(); ++ticks) {
+    drive.robot->tick();
+    ASSERT_EQ(drive.seen().status, MotorStatus::kReady) << ticks;
+    ASSERT_TRUE(drive.seen().feedback.zeroed) << ticks;
+  }
+  EXPECT_EQ(drive.result.motors[0], Refusal::kNone);
+}
+
+TEST_P(StoringDriveTest, IsLostSoonIfItNeverAnswersAgain) {
+  StoringDrive drive{GetParam()};
+  drive.begin();
+  drive.tickUntilItStores();
+  drive.robot->simBus().silence(0, true);
+  int ticks = 0;
+  for (; ticks < 2000 && drive.seen().status == MotorStatus::kReady; ++ticks) drive.robot->tick();
+  EXPECT_EQ(drive.seen().status, MotorStatus::kOffline);
+  EXPECT_LE(ticks, 640);
+  for (int i = 0; i < 2000 && !drive.answered(); ++i) drive.robot->tick();
+  EXPECT_NE(drive.result.motors[0], Refusal::kNone);
+  drive.robot->simBus().silence(0, false);
+  drive.robot->run(50);
+  EXPECT_EQ(drive.seen().status, MotorStatus::kReady);
+}
+
+// The supervisor refuses to enable it meanwhile.
+TEST_P(StoringDriveTest, IsLostAsEverOnceItIsOn) {
+  StoringDrive drive{GetParam()};
+  drive.configuring().begin(drive.timeoutOf500Ms());
+  drive.tickUntilItStores();
+  drive.robot->beginEnabling(MotorSet{1});
+  drive.robot->tick();
+  ASSERT_EQ(drive.seen().status, MotorStatus::kEnabling);
+  ASSERT_TRUE(drive.configuring().excusesSilence());
+  drive.robot->simBus().silence(0, true);
+  drive.robot->run(25);
+  EXPECT_EQ(drive.seen().status, MotorStatus::kOffline);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StoringDriveTest, ::testing::ValuesIn(storingDrives()));
+
+}  // namespace
+}  // namespace rc10::test::axis_storing_test
