@@ -13,7 +13,7 @@ void AngleReference::update(double position_deg, bool may_restart, bool may_retu
     const bool power_on = config_.zero_at_power_on;
     const bool absolute = config_.absolute && !power_on;
     // The number of turns at power-up says nothing.
-    const double within_turn_deg = absolute ? shortestAngle(zero_deg_, position_deg) : 0.0;
+    const double within_turn_deg = absolute ? shortestAngle(config_.zero_deg, position_deg) : 0.0;
     const auto first_deg = absolute ? firstAngle(within_turn_deg, config_.travel) : std::optional{0.0};
     offset_deg_ = first_deg.value_or(within_turn_deg) - position_deg;
     known_ = !forgotten_ && ((absolute && first_deg) || power_on);
@@ -27,7 +27,7 @@ void AngleReference::update(double position_deg, bool may_restart, bool may_retu
 bool AngleReference::setZero(double angle_deg) noexcept {
   if (!begun_ || !std::isfinite(angle_deg)) return false;
   offset_deg_ = angle_deg - position_deg_;
-  zero_deg_ = shortestAngle(angle_deg, position_deg_);
+  config_.zero_deg = shortestAngle(angle_deg, position_deg_);
   known_ = true;
   turn_unclear_ = false;
   lost_ = false;
@@ -38,7 +38,7 @@ bool AngleReference::setZero(double angle_deg) noexcept {
 double AngleReference::zeroForFile() const noexcept {
   if (!begun_ || !config_.absolute || config_.zero_at_power_on)
     return std::numeric_limits<double>::quiet_NaN();
-  return shortestAngle(totalAngleDeg(), position_deg_);
+  return shortestAngle(0.0, config_.zero_deg);
 }
 
 void AngleReference::forget() noexcept {

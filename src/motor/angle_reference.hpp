@@ -10,12 +10,12 @@ class AngleReference {
  public:
   struct Config {
     bool absolute = false;          ///< The drive's position means the same after every power-up.
-    double zero_deg = 0.0;          ///< Absolute only: the position that is to read 0.
+    double zero_deg = 0.0;          ///< Absolute only: the position that is to read 0, until setZero().
     bool zero_at_power_on = false;  ///< The first position is 0, and known.
     Travel travel{};                ///< Absolute only: tells the turn at power-up.
   };
 
-  explicit AngleReference(const Config& config) noexcept : config_(config), zero_deg_(config.zero_deg) {}
+  explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
   /// A new reference is a jump of the angle. `may_restart`: allowed once an unclear turn has become clear, as
   /// no target follows the angle. `may_return`: allowed after the reference was lost.
@@ -49,7 +49,6 @@ class AngleReference {
   bool turn_unclear_ = false;
   bool lost_ = false;       ///< Absolute only.
   bool forgotten_ = false;  ///< Until setZero().
-  double zero_deg_;         ///< Absolute only: Config::zero_deg, or that of the last setZero().
   double position_deg_ = 0.0;
   double offset_deg_ = 0.0;
 };

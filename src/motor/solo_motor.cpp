@@ -83,29 +83,28 @@ DriveComplaint SoloMotor::scaleComplaint() const noexcept {
 }
 
 void SoloMotor::loseReference() noexcept {
-  if (reference_.known()) ++feedback_.losses;
+  const bool was_known = reference_.known();
   reference_.lose();
-  feedback_.zeroed = false;
-  feedback_.turn_unclear = false;
-  holding_ = false;
+  noteLoss(was_known);
 }
 
 void SoloMotor::forgetReference() noexcept {
   reference_.forget();
-  feedback_.zeroed = false;
-  feedback_.turn_unclear = false;
-  holding_ = false;
+  noteLoss(false);
 }
 
 void SoloMotor::doubtTurn() noexcept {
   const bool was_known = reference_.known();
   reference_.doubtTurn();
-  if (was_known && !reference_.known()) {
-    ++feedback_.losses;
-    holding_ = false;
-  }
+  noteLoss(was_known);
+}
+
+void SoloMotor::noteLoss(bool was_known) noexcept {
   feedback_.zeroed = reference_.known();
   feedback_.turn_unclear = reference_.turnUnclear();
+  if (reference_.known()) return;
+  if (was_known) ++feedback_.losses;
+  holding_ = false;
 }
 
 bool SoloMotor::setZero(double angle_deg) noexcept {

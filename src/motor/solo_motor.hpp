@@ -140,6 +140,8 @@ class SoloMotor : public Motor_Base, public CommandPacker {
 
  private:
   [[nodiscard]] Target resolved() noexcept;
+  /// The reference has been lost, doubted or forgotten: a loss if it `was_known`.
+  void noteLoss(bool was_known) noexcept;
   /// A limit of the current, as far as the drive reports it.
   [[nodiscard]] double reportable(float limit_a) const noexcept;
 

@@ -176,11 +176,15 @@ TEST(DjiReference, AGapTooLongToCountTheTurnsIsNotZeroedUntilSetAgain) {
   ASSERT_TRUE(motor.setZero(0.0));
   (void)feeder.feed({.position = 100}, milliseconds{kM2006.countable_lost_frames + 1});
   EXPECT_TRUE(motor.feedback().zeroed);
+  EXPECT_EQ(motor.feedback().losses, 0U);
   (void)feeder.feed({.position = 100}, milliseconds{100});
   EXPECT_FALSE(motor.feedback().zeroed);
+  EXPECT_EQ(motor.feedback().losses, 1U);
   (void)feeder.feed({.position = 100});
   feeder.tick();
   EXPECT_FALSE(motor.feedback().zeroed);
+  (void)feeder.feed({.position = 100}, milliseconds{100});
+  EXPECT_EQ(motor.feedback().losses, 1U) << "there was none to lose";
   ASSERT_TRUE(motor.setZero(90.0));
   (void)feeder.feed({.position = 100});
   EXPECT_TRUE(motor.feedback().zeroed);

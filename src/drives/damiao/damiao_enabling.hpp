@@ -45,6 +45,7 @@ class DamiaoEnabling {
   [[nodiscard]] SequenceProgress progress() const noexcept { return sequence_.progress(); }
   /// The register that differs from the plan, or that the drive does not tell.
   [[nodiscard]] std::optional<damiao::Register> culprit() const noexcept { return culprit_; }
+  void forgive() noexcept { culprit_.reset(); }
 
  private:
   enum Step : std::uint8_t {

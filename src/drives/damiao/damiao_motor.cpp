@@ -132,8 +132,7 @@ void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
     // While it obeys, somebody else has asked or written: targets in another scale would be other torques.
     if (sequenceRuns() || armed_) {
       enabling_.onReply(reply);
-      culprit_ = enabling_.culprit();
-      if (culprit_) armed_ = false;
+      if (enabling_.culprit()) armed_ = false;
     }
     return;
   }
@@ -364,13 +363,11 @@ void Damiao_Motor::runEnabling(const Tick& tick) noexcept {
   }
   if (begins()) {
     armed_ = stopped_ = false;
-    culprit_.reset();
     enabling_.begin();
     // A fault that is known already: it is cleared by request only.
     if (status_ >= damiao::kFirstFault) enabling_.onStatus(status_);
   }
   enabling_.update(tick.now);
-  culprit_ = enabling_.culprit();
 }
 
 SequenceProgress Damiao_Motor::sequenceProgress() const noexcept { return progressOf(enabling_.progress()); }
@@ -379,15 +376,15 @@ SequenceProgress Damiao_Motor::sequenceProgress() const noexcept { return progre
 
 DriveComplaint Damiao_Motor::complaint() const noexcept {
   if (const auto fault = damiao::faultOf(status_); fault != FaultCode::kNone) return {fault, status_};
-  if (culprit_) {
-    return {FaultCode::kDriveSetting, kRegisterComplaint + static_cast<std::uint32_t>(*culprit_)};
+  if (const auto culprit = enabling_.culprit()) {
+    return {FaultCode::kDriveSetting, kRegisterComplaint + static_cast<std::uint32_t>(*culprit)};
   }
   if (stopped_) return {FaultCode::kDriveStopped, status_};
   return scaleComplaint();
 }
 
 void Damiao_Motor::clearComplaint() noexcept {
-  culprit_.reset();
+  enabling_.forgive();
   stopped_ = false;
   if (status_ >= damiao::kFirstFault) clears_left_ = kClears;
 }

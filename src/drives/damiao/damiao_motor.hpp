@@ -89,7 +89,6 @@ class Damiao_Motor : public SoloMotor {
   std::uint8_t status_ = damiao::kStatusDisabled;
   bool armed_ = false;    ///< Enabled by the sequence, and neither rested nor stopped since.
   bool stopped_ = false;  ///< Not enabled, though it was to obey.
-  std::optional<damiao::Register> culprit_;
   int clears_left_ = 0;
   std::optional<double> stay_rad_;  ///< Place that a position mode keeps without a target.
   MonotonicTime asked_position_{};

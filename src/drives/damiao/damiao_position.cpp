@@ -20,7 +20,11 @@ constexpr double kFarthestCountRad = 1e7;
 }  // namespace
 
 DamiaoPosition::DamiaoPosition(const DamiaoScale& scale, double fastest_rad_s, Duration period) noexcept
-    : scale_(scale), fastest_rad_s_(fastest_rad_s), period_(period), step_rad_(damiao::positionStep(scale)) {}
+    : scale_(scale),
+      fastest_rad_s_(fastest_rad_s),
+      period_(period),
+      longest_silence_(longestSilence(scale, fastest_rad_s)),
+      step_rad_(damiao::positionStep(scale)) {}
 
 Duration DamiaoPosition::longestSilence(const DamiaoScale& scale, double fastest_rad_s) noexcept {
   const std::chrono::duration<double> silence_s{kSureShare * scale.p_max_rad / fastest_rad_s};
@@ -50,7 +54,7 @@ DamiaoPosition::Step DamiaoPosition::take(std::uint16_t code, MonotonicTime rece
       fastest_rad_s_ * static_cast<double>(seconds(longestApart(gap, period_))) + kSlackRad;
   Step step = Step::kFollows;
   if (std::fabs(moved * step_rad_) > reach_rad) step = Step::kJumped;
-  if (std::chrono::abs(gap) > longestSilence(scale_, fastest_rad_s_)) step = Step::kLost;
+  if (std::chrono::abs(gap) > longest_silence_) step = Step::kLost;
   if (step == Step::kFollows) {
     code_ += moved;
   } else {

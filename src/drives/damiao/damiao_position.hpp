@@ -44,6 +44,7 @@ class DamiaoPosition {
   DamiaoScale scale_;
   double fastest_rad_s_;
   Duration period_;
+  Duration longest_silence_;
   double step_rad_;
   bool begun_ = false;
   bool known_ = false;

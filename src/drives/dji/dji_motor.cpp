@@ -80,7 +80,10 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
       feedback_.zeroed = zero_at_power_on_;
     }
   }
-  if (encoder_.referenceLost()) feedback_.zeroed = false;
+  if (encoder_.referenceLost()) {
+    if (feedback_.zeroed) ++feedback_.losses;
+    feedback_.zeroed = false;
+  }
   updateAngles();
   // Turned by hand to where its turn is clear.
   if (!first && feedback_.turn_unclear && dutyOf(ordered()) != DriveDuty::kObey) {

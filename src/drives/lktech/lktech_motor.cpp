@@ -16,9 +16,9 @@ constexpr double kLktechNoLimitDegS = 65535.0;
 
 constexpr Duration kLktechStepPatience = std::chrono::milliseconds{50};
 constexpr int kLktechStepTries = 5;
-// Two queries long: a drive that is on has answered by then.
-constexpr Duration kLktechCopyWithin = std::chrono::milliseconds{100};
 constexpr Duration kLktechQuerySpacing = std::chrono::milliseconds{50};
+// A drive that is on has answered by then.
+constexpr Duration kLktechCopyWithin = 2 * kLktechQuerySpacing;
 constexpr Duration kLktechUrgentQuerySpacing = std::chrono::milliseconds{10};
 /// A frame with the shape of a command is a reply only if the motor is known to be about so cold.
 constexpr float kLktechNearZeroC = 2.0F;

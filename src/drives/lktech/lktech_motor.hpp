@@ -63,7 +63,7 @@ class LKTech_Motor final : public SoloMotor {
   void followAngle(double total_angle_deg) noexcept;
   void release() noexcept;
   [[nodiscard]] int rawOf(double amperes) const noexcept;
-  /// A frame that switches the drive on: its copy of ours, or somebody else's.
+  /// Copy of our own frame that switches the drive on.
   [[nodiscard]] bool copiesOurs(const CanFrame& frame) const noexcept;
 
   int id_;

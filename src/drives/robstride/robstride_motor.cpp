@@ -184,7 +184,7 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
   feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   feedback_.temperature_c = static_cast<float>(seen.temperature_c);
   acceptSample(received, position_rad_ * kDegPerRad);
-  // An absolute encoder alone would know it again there.
+  // acceptSample() finds an absolute reference again, even at the end of the scale.
   if (feedback_.angle_at_end) loseReference();
   enabling_.onFeedback(seen);
 }

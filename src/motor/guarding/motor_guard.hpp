@@ -26,7 +26,8 @@ struct GuardConfig {
   bool encoder_jumps = false;       ///< One is a fault.
   float frozen_a = 0.0F;            ///< The reported current is off by more, and nothing changes at all.
   float runaway_rpm = 0.0F;         ///< Gains so much speed against all its torque.
-  Duration runaway_time{};          ///< It keeps it for so long, in a loop of the drive.
+  Duration runaway_time{};  ///< Time for which the gained speed lasts before it is a fault; targets of the
+                            ///< drive's own loop only.
   float velocity_limit_rpm = 0.0F;  ///< Bounds what a target asks for; 0: none.
 
   [[nodiscard]] bool any() const noexcept {
