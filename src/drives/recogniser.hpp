@@ -49,6 +49,7 @@ using ObeyedBy = std::optional<Obeying> (*)(CanId question);
 /// Kinds that more than one file names.
 namespace drive_kind {
 inline constexpr std::string_view kVesc = "VESC";
+inline constexpr std::string_view kCubemarsMit = "CubeMars (MIT)";
 inline constexpr std::string_view kOdrive = "ODrive";
 /// `is_extended` is set in the drive: the same messages under ids of 29 bits. rc10d does not drive it so.
 inline constexpr std::string_view kOdriveExtended = "ODrive (extended ids)";

@@ -187,7 +187,7 @@ class Remote : public Module_Base {
       robot.hearClient(tick.now - age);
       watchArm(tick.now - age, tick, robot);
     }
-    // An e-stop ends what the switch has asked for, its own end enables nothing; so does a disable.
+    // An e-stop or a disable ends what the switch has asked for; the end of an e-stop enables nothing.
     const bool disabled = std::exchange(disables_, robot.disables()) != robot.disables();
     if (disabled || robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
     // After a gap the switch counts from the second frame. It may be going down: it counts as up until two

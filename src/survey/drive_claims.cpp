@@ -8,11 +8,6 @@
 namespace rc10::survey {
 namespace {
 
-bool accepted(const std::vector<FrameFilter>& filters, const CanFrame& frame) {
-  return std::any_of(filters.begin(), filters.end(),
-                     [&](const FrameFilter& filter) { return accepts(filter, frame); });
-}
-
 /// The frame may be the motor's, though its family is not known to send under this id.
 bool maySend(const KnownMotor& motor, const CanFrame& frame) {
   const auto families = builtInFamilies();
@@ -38,7 +33,7 @@ void DriveClaims::takeStranger(const DriveGuess& guess) {
 void DriveClaims::take(const CanFrame& frame) {
   if (frame.type != FrameType::kData) return;
   const auto sender = std::find_if(motors_.begin(), motors_.end(),
-                                   [&](const KnownMotor& motor) { return accepted(motor.sends, frame); });
+                                   [&](const KnownMotor& motor) { return acceptsAny(motor.sends, frame); });
   std::vector<std::pair<DriveGuess, const MotorFamily*>> guesses;
   for (const auto& entry : builtInFamilies()) {
     std::vector<DriveGuess> of_family;
@@ -53,13 +48,15 @@ void DriveClaims::take(const CanFrame& frame) {
   const bool exact = std::any_of(guesses.begin(), guesses.end(), [&](const auto& each) {
     return of_sender(each) && each.first.id == sender->id;
   });
-  const bool may_be = sender != motors_.end() && !own && maySend(*sender, frame);
-  const auto index = static_cast<std::size_t>(sender - motors_.begin());
-  const bool anothers = std::all_of(guesses.begin(), guesses.end(), [&](const auto& each) {
-    const auto claim = of(each.first);
-    return claim && claim->assumed && !claim->collides && claim->motor != index;
-  });
-  if (may_be && anothers) unguessed_[index] = true;
+  const bool fits_motor = sender != motors_.end() && !own && maySend(*sender, frame);
+  if (fits_motor) {
+    const auto index = static_cast<std::size_t>(sender - motors_.begin());
+    const bool all_claimed_by_others = std::all_of(guesses.begin(), guesses.end(), [&](const auto& each) {
+      const auto claim = of(each.first);
+      return claim && claim->assumed && !claim->collides && claim->motor != index;
+    });
+    if (all_claimed_by_others) heard_without_guess_[index] = true;
+  }
   for (const auto& each : guesses) {
     const auto& guess = each.first;
     const auto* family = each.second;
@@ -72,9 +69,10 @@ void DriveClaims::take(const CanFrame& frame) {
       });
     if (found == motors_.end() || (own && family != sender->family)) continue;
     if (exact && guess.id != sender->id) continue;
-    claims_.emplace_back(guess, Claim{.motor = static_cast<std::size_t>(found - motors_.begin()),
-                                      .collides = family != found->family && (!may_be || isStranger(guess)),
-                                      .assumed = may_be});
+    claims_.emplace_back(guess,
+                         Claim{.motor = static_cast<std::size_t>(found - motors_.begin()),
+                               .collides = family != found->family && (!fits_motor || isStranger(guess)),
+                               .assumed = fits_motor});
   }
 }
 
@@ -90,14 +88,15 @@ std::vector<std::string> DriveClaims::unheard() const {
     const bool heard = std::any_of(claims_.begin(), claims_.end(), [i](const auto& claim) {
       return claim.second.motor == i && !claim.second.collides;
     });
-    if (!heard && !unguessed_[i]) names.push_back(motors_[i].name);
+    if (!heard && !heard_without_guess_[i]) names.push_back(motors_[i].name);
   }
   return names;
 }
 
 std::string DriveClaims::commandedBy(const CanFrame& question) const {
-  const auto found = std::find_if(motors_.begin(), motors_.end(),
-                                  [&](const KnownMotor& motor) { return accepted(motor.steers, question); });
+  const auto found = std::find_if(motors_.begin(), motors_.end(), [&](const KnownMotor& motor) {
+    return acceptsAny(motor.steers, question);
+  });
   if (found != motors_.end()) return "motor '" + found->name + "'";
   const auto answered = std::find_if(motors_.begin(), motors_.end(), [&](const KnownMotor& motor) {
     return std::any_of(motor.steers.begin(), motor.steers.end(), [&](const FrameFilter& filter) {

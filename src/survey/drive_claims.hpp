@@ -32,7 +32,7 @@ class DriveClaims {
   };
 
   explicit DriveClaims(std::vector<KnownMotor> motors)
-      : motors_(std::move(motors)), unguessed_(motors_.size()) {}
+      : motors_(std::move(motors)), heard_without_guess_(motors_.size()) {}
 
   void take(const CanFrame& frame);
 
@@ -53,8 +53,8 @@ class DriveClaims {
   std::vector<KnownMotor> motors_;
   std::vector<std::pair<DriveGuess, Claim>> claims_;
   std::vector<DriveGuess> strangers_;
-  std::vector<bool>
-      unguessed_;  ///< Motors heard under an id at which no family is known, or another of them.
+  /// Motors heard by frames that no recogniser takes, or takes for another motor's.
+  std::vector<bool> heard_without_guess_;
 };
 
 }  // namespace rc10::survey

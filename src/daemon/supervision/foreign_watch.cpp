@@ -1,8 +1,8 @@
 #include "daemon/supervision/foreign_watch.hpp"
 
-#include <algorithm>
 #include <utility>
 
+#include "bus/frame_listener.hpp"
 #include "daemon/exchange/events.hpp"
 
 namespace rc10 {
@@ -12,14 +12,10 @@ ForeignWatch::ForeignWatch(Robot& robot) : robot_(robot), watched_(robot.motors(
 }
 
 void ForeignWatch::onForeign(const fdCANbus& bus, const CanFrame& frame) noexcept {
-  const auto steered = [&frame](const Robot::MotorEntry& entry) {
-    return std::any_of(entry.steers.begin(), entry.steers.end(),
-                       [&frame](const FrameFilter& filter) { return accepts(filter, frame); });
-  };
   for (std::size_t motor = 0; motor < watched_.size(); ++motor) {
     const auto& entry = robot_.motors()[motor];
     const auto& on = robot_.buses()[entry.bus];
-    if (on.bus.get() != &bus || on.foreign.frames == 0 || !steered(entry)) continue;
+    if (on.bus.get() != &bus || on.foreign.frames == 0 || !acceptsAny(entry.steers, frame)) continue;
     if (bus.isRest(frame)) return;
     count(motor, on.foreign, frame);
   }

@@ -49,11 +49,12 @@ struct MotorGroup {
   std::optional<std::uint64_t> first_disable;
   MotorSet left;  ///< Members that were on and have been disabled.
   std::optional<std::uint64_t>
-      let_go;     ///< Request that let go of those that rested already: once, by all it names.
-  MotorSet gone;  ///< missing() of the last tick.
+      let_go;  ///< Request that let go of those that rested already: once, by all it names.
   // Until a request changes it.
-  MotorSet rests_with_it;   ///< Disabled since another member was.
-  MotorSet rearm;           ///< To be enabled again by itself; empty: none.
+  MotorSet rests_with_it;  ///< Disabled since another member was.
+  MotorSet rearm;          ///< To be enabled again by itself; empty: none.
+  // From tick to tick.
+  MotorSet gone;            ///< missing() of the last tick.
   MonotonicTime stopped{};  ///< Last time at which it was.
   MonotonicTime moved{};    ///< Last time at which a member moved or was missing.
 };

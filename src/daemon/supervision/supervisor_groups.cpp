@@ -57,7 +57,7 @@ void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
   const auto gone = group.missing(axes_);
   const bool alone = alone_ && groupOf(*alone_) == &group;
-  // One that somebody has tried alone, while another was missing all the time, is held on.
+  // A hold after a disable ends with a member that is lost now, not with one that was missing already.
   const bool lost_while_held = (gone & ~std::exchange(group.gone, gone)).any() && group.held(axes_).any();
   if ((!alone && (group.on(axes_) | group.dropped).any()) || lost_while_held) {
     if (gone.any()) {

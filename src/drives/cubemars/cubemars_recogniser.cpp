@@ -20,7 +20,7 @@ void recogniseCubemars(const CanFrame& frame, std::vector<DriveGuess>& guesses) 
   const int told = frame.data[0];
   const bool to_host = frame.id.value == 0 || static_cast<int>(frame.id.value) == told;
   if (!frame.id.extended && to_host && told != 0 && (frame.length == 8 || frame.length == 6))
-    guesses.push_back({kCubemarsMit, told});
+    guesses.push_back({drive_kind::kCubemarsMit, told});
 }
 
 }  // namespace rc10
