@@ -175,7 +175,7 @@ void Fleet::deliver() noexcept {
 }
 
 void Fleet::command() noexcept {
-  command_.received = now_;
+  command_.received = command_.said = now_;
   exchange_.commands.push(command_);
 }
 

@@ -91,7 +91,7 @@ class MixedRobot {
       for (int i = 0; i < 3000; ++i) tick();
     }
     if (!allActive()) die("not every motor is ACTIVE");
-    command_.received = now_;
+    command_.received = command_.said = now_;
     command_.deadline = now_ + std::chrono::hours{24};
     exchange_.commands.push(command_);
     for (int i = 0; i < 2000; ++i) tick();

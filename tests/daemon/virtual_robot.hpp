@@ -147,7 +147,7 @@ class VirtualRobot {
   void command(std::size_t motor, Target target, Duration validity = std::chrono::milliseconds{50}) {
     Command command;
     command.client = "test";
-    command.received = now_;
+    command.received = command.said = now_;
     command.deadline = now_ + validity;
     command.count = 1;
     command.setpoints[0] = {static_cast<std::uint16_t>(motor), target};
@@ -160,7 +160,7 @@ class VirtualRobot {
     Command command;
     command.client = client;
     command.priority = priority;
-    command.received = now_;
+    command.received = command.said = now_;
     command.deadline = now_ + validity;
     command.count = 1;
     command.setpoints[0] = {static_cast<std::uint16_t>(motor), target};

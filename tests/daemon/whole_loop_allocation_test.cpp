@@ -55,7 +55,7 @@ class WholeLoopAllocationTest : public ::testing::Test {
     gains.gains.values[1] = {LoopGain::kAngleKp, 3.5F};
     const AllocGuard guard;
     for (int i = 0; i < 2000; ++i) {
-      command.received = monotonicNow();
+      command.received = command.said = monotonicNow();
       command.deadline = command.received + 60s;
       exchange.commands.push(command);
       if (i % 500 == 100) exchange.orders.push({2, Operation::kZero, MotorSet{0b111}, 0.0});

@@ -359,7 +359,7 @@ void Chaos::command(const Client& client) {
   command.client = client.name;
   command.session = client.session;
   command.priority = client.priority;
-  command.received = robot_->now();
+  command.received = command.said = robot_->now();
   command.deadline = command.received + client.validity;
   for (std::size_t motor = 0; motor < places_.size(); ++motor) {
     if (!client.motors.test(motor)) continue;

@@ -405,7 +405,7 @@ void Match::drive() {
   Command command;
   command.client = link::Name{"program"};
   command.session = 1;
-  command.received = now;
+  command.received = command.said = now;
   command.deadline = now + 100ms;
   for (auto& player : players_) {
     if (player.target.mode == kByModule) continue;

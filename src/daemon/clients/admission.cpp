@@ -122,7 +122,7 @@ CommandRefusal Admission::admit(const link::Command& message, const Speaker& spe
     named.set(out.setpoints[i].motor);
   }
   out.deadline = *deadline;
-  out.received = receivedAt(message.received_ns, now);
+  out.received = out.said = receivedAt(message.received_ns, now);
   out.client = message.client;
   const auto client = message.client.view();
   not_permitted_ = permissions_.whyNoCommand(speaker, client, named, message.priority);

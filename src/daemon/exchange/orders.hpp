@@ -38,7 +38,7 @@ struct Command {
   std::int32_t priority = 0;
   MonotonicTime received;  ///< By this host, as the kernel stamped it; from a module: its tick.
   MonotonicTime deadline;  ///< That plus its validity.
-  Duration inputs_age{};   ///< Time since a client or a person said what a module follows; else 0.
+  MonotonicTime said;  ///< By a client, as `received`; from a module: what it follows, by a client or person.
   std::size_t count = 0;
   std::array<Setpoint, kMaxMotors> setpoints;
 };

@@ -425,9 +425,9 @@ void Axis::clearFault(const Tick& tick) noexcept {
   clearing_until_ = tick.now + kClearPatience;
 }
 
-std::optional<SkipReason> Axis::follow(const Target& target, const Lease::Holder& sender,
+std::optional<SkipReason> Axis::follow(const Target& target, MonotonicTime said, const Lease::Holder& sender,
                                        const Lease::Term& term) noexcept {
-  const bool late = enabledSince(term.received - term.inputs_age);
+  const bool late = predatesEnabling(said);
   if (target.mode == ControlMode::kCoast) {
     if (late) return std::nullopt;
     // Letting go of a motor that is not held is no mistake: clients do it when they leave. While it is valid

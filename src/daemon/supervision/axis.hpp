@@ -116,10 +116,12 @@ class Axis {
   [[nodiscard]] bool obeys(const Lease::Holder& sender, MonotonicTime now) const noexcept {
     return status_ == MotorStatus::kActive && allows(sender, now);
   }
-  /// Words from before it do not act.
-  [[nodiscard]] bool enabledSince(MonotonicTime said) const noexcept { return said < enabling_since_; }
-  /// Takes a target that the lease allows. The reason, if it does not act.
-  [[nodiscard]] std::optional<SkipReason> follow(const Target& target, const Lease::Holder& sender,
+  /// Said before the motor was enabled: it does not act.
+  [[nodiscard]] bool predatesEnabling(MonotonicTime said) const noexcept { return said < enabling_since_; }
+  /// Takes a target that the lease allows, and that follows what was `said` then. The reason, if it does not
+  /// act.
+  [[nodiscard]] std::optional<SkipReason> follow(const Target& target, MonotonicTime said,
+                                                 const Lease::Holder& sender,
                                                  const Lease::Term& term) noexcept;
   /// A command of `sender` came too late to act: what it told this motor before ends with it.
   void outdate(const Lease::Holder& sender, MonotonicTime deadline) noexcept {

@@ -32,7 +32,6 @@ class Lease {
   struct Term {
     MonotonicTime received{};
     MonotonicTime until{};
-    Duration inputs_age{};  ///< As of a command.
   };
 
   void take(const Holder& holder, const Term& term) noexcept {

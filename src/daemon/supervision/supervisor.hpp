@@ -40,7 +40,8 @@ class Supervisor {
   /// Whether a target of `sender` for this motor would act now, if it follows what was `said` then.
   [[nodiscard]] bool wouldObey(std::size_t motor, const Lease::Holder& sender, MonotonicTime said,
                                const Tick& tick) const noexcept {
-    return axes_[motor].obeys(sender, tick.now) && !axes_[motor].enabledSince(said) && !waitsForGroup(motor);
+    return axes_[motor].obeys(sender, tick.now) && !axes_[motor].predatesEnabling(said) &&
+           !waitsForGroup(motor);
   }
 
   /// Tells every motor what kind of frame its drive gets. Called before Motor_Base::update().

@@ -63,8 +63,7 @@ bool Supervisor::takeModuleCommand(const Command& command, const Tick& tick) noe
 
 // Inputs of a module from before its motor was enabled: that is no mistake of the module.
 bool Supervisor::followsThePast(const Command::Setpoint& setpoint, const Command& command) const noexcept {
-  return setpoint.target.mode != ControlMode::kCoast &&
-         axes_[setpoint.motor].enabledSince(command.received - command.inputs_age);
+  return setpoint.target.mode != ControlMode::kCoast && axes_[setpoint.motor].predatesEnabling(command.said);
 }
 
 // Letting go is never withheld.
@@ -130,9 +129,10 @@ std::optional<SkipReason> Supervisor::whySkipped(const Command::Setpoint& setpoi
 
 bool Supervisor::follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                         const Command& command, const Tick& tick) noexcept {
-  const Lease::Term term{command.received, command.deadline, command.inputs_age};
-  const auto reason =
-      waits(setpoint) ? SkipReason::kGroup : axes_[setpoint.motor].follow(setpoint.target, sender, term);
+  const Lease::Term term{command.received, command.deadline};
+  const auto reason = waits(setpoint)
+                          ? SkipReason::kGroup
+                          : axes_[setpoint.motor].follow(setpoint.target, command.said, sender, term);
   if (reason) skip(setpoint, *reason, tick);
   return !reason;
 }

@@ -98,7 +98,7 @@ void ModuleRunner::handOver(const Tick& tick) noexcept {
     command_.priority = from.priority;
     command_.received = tick.now;
     command_.deadline = tick.now + validity_;
-    command_.inputs_age = tick.now - said_;
+    command_.said = said_;
     const bool refused = !supervisor_.takeModuleCommand(command_, tick);
     if (refused && !control.refused && tick.now - control.last_refusal_report >= kReportInterval) {
       control.last_refusal_report = tick.now;

@@ -412,7 +412,7 @@ TEST_F(FallbackTest, ACoastFromBeforeItWasEnabledLetsGoOfNothing) {
   ASSERT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
   ASSERT_EQ(robot->motor(kLeft).acting, Acting::kHold);
   Command late;
-  late.received = before;
+  late.received = late.said = before;
   late.deadline = robot->now() + 1s;
   late.count = 1;
   late.setpoints[0] = {static_cast<std::uint16_t>(kLeft), {.mode = ControlMode::kCoast}};

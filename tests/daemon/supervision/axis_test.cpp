@@ -77,10 +77,10 @@ TEST_F(AxisTest, IsReadyWithFreshFeedbackAndOfflineWithoutForItsTimeout) {
 
 TEST_F(AxisTest, SaysWhyATargetDoesNotAct) {
   tick();
-  EXPECT_EQ(axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive);
+  EXPECT_EQ(axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive);
   activate();
-  EXPECT_EQ(axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms}), std::nullopt);
-  EXPECT_EQ(axis_.follow({.mode = ControlMode::kVoltage}, kPlanner, {now_, now_ + 50ms}),
+  EXPECT_EQ(axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 50ms}), std::nullopt);
+  EXPECT_EQ(axis_.follow({.mode = ControlMode::kVoltage}, now_, kPlanner, {now_, now_ + 50ms}),
             SkipReason::kRefused);
 }
 
@@ -88,23 +88,23 @@ TEST_F(AxisTest, RefusesAnAngleThatNoDoubleTellsExactly) {
   activate();
   for (const double far_deg : {1.1e12, -1e17, 1e300}) {
     for (const auto mode : {ControlMode::kTotalAngle, ControlMode::kAngle})
-      EXPECT_EQ(axis_.follow({.mode = mode, .value = far_deg}, kPlanner, {now_, now_ + 50ms}),
+      EXPECT_EQ(axis_.follow({.mode = mode, .value = far_deg}, now_, kPlanner, {now_, now_ + 50ms}),
                 SkipReason::kTooFar);
   }
 }
 
 TEST_F(AxisTest, ObeysOneClientUntilItsCommandLapsesOrAHigherPriorityTakesOver) {
   activate();
-  (void)axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms});
+  (void)axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 50ms});
   EXPECT_TRUE(axis_.obeys(kRemote, now_));
-  (void)axis_.follow(kTurn, kRemote, {now_, now_ + 50ms});
+  (void)axis_.follow(kTurn, now_, kRemote, {now_, now_ + 50ms});
   EXPECT_FALSE(axis_.obeys(kPlanner, now_));
   EXPECT_TRUE(axis_.obeys(kPlanner, now_ + 50ms));
 }
 
 TEST_F(AxisTest, BeginsItsFallbackInTheTickInWhichTheCommandLapses) {
   activate();
-  (void)axis_.follow(kTurn, kPlanner, {now_, now_ + 2ms});
+  (void)axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 2ms});
   tick();
   EXPECT_FALSE(lapsed_);
   EXPECT_EQ(axis_.motor().ordered(), FrameKind::kCommand);
@@ -131,7 +131,7 @@ TEST_F(AxisTest, FillsItsSnapshot) {
   EXPECT_TRUE(std::isnan(seen.target_shaped));
   EXPECT_EQ(seen.command_received, MonotonicTime{});
   EXPECT_TRUE(seen.owner.view().empty());
-  (void)axis_.follow(kTurn, kPlanner, {now_, now_ + 50ms});
+  (void)axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 50ms});
   const auto received = now_;
   tick();
   axis_.fill(seen);
