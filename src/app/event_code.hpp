@@ -42,6 +42,8 @@ enum class EventCode : std::int32_t {
                        ///< `client`: who asked
   kMovesAtRest = 111,  ///< it gains speed though its drive is told to rest; value: its speed in rpm
   kNeverHeard = 112,   ///< no frame of its drive since the start; value: its id
+  kFallbackReplaced =
+      113,  ///< a load drags it faster than reduced mode allows; value: the FallbackAction that resists now
   kRobotState =
       200,  ///< value: new RobotStatus, extra: ExtraPair of the old one and the StopCause; `client`: by whom
   kTicksMissed = 201,     ///< value: how many

@@ -173,6 +173,9 @@ std::string eventText(std::int32_t code, std::int32_t value, std::int32_t extra,
       return "it gains speed, " + std::to_string(value) +
              " rpm now, though its drive is told to rest: gravity, a slope, a hand, or the drive";
     case kNeverHeard: return neverHeard(value);
+    case kFallbackReplaced:
+      return std::string("a load drags it faster than reduced mode allows: ") + fallbackWord(value) +
+             " in place of a fallback that could push";
     case kRobotState: return change<RobotStatus>(value, extra, client);
     case kTicksMissed: return std::to_string(value) + (value == 1 ? " tick missed" : " ticks missed");
     case kCommandRefused: return refused(value, client);

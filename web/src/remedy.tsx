@@ -50,6 +50,7 @@ const kSections: Record<number, string> = {
   108: 'it-moves-and-not-as-told',
   109: 'it-moves-and-not-as-told',
   112: 'a-motor-is-offline',
+  113: 'it-moves-and-not-as-told',
   200: 'it-is-ready-and-does-not-move',
   201: 'late',
   202: 'lcm-and-programs',

@@ -186,20 +186,20 @@ std::optional<MotorEvent> Axis::endsEnabling(const Tick& tick) const noexcept {
   return std::nullopt;
 }
 
-bool Axis::trips(bool reduced, const Tick& tick) noexcept {
+Axis::Trip Axis::trips(bool reduced, const Tick& tick) noexcept {
   limits_ = 0;
   // A fallback that brakes or holds after an e-stop is a loop as well.
   const bool moves = status_ == MotorStatus::kActive ||
                      (status_ == MotorStatus::kReady && fallback_.acts()) || heldWhileEnabling();
-  const bool too_fast = reduced_.any() && tooFastWhenReduced(reduced, moves, tick);
+  const Trip when_reduced = reduced_.any() ? tripsWhenReduced(reduced, moves, tick) : Trip::kNone;
   if (!moves) {
     guard_.reset();
     // Limits that a drive is told while it is enabled are already those of reduced mode.
     if (reduced_.any()) motor_.derate(reduced_.effortShare());
     // Before its drive answers its group may let go of it, and its fallback goes on.
-    if (status_ != MotorStatus::kEnabling || !guard_.tooHot(motor_.feedback())) return false;
+    if (status_ != MotorStatus::kEnabling || !guard_.tooHot(motor_.feedback())) return Trip::kNone;
     fault_ = FaultCode::kOverheated;
-    return true;
+    return Trip::kFault;
   }
   const auto verdict = guard_.step({.feedback = motor_.feedback(),
                                     .target = in_force_,
@@ -210,25 +210,25 @@ bool Axis::trips(bool reduced, const Tick& tick) noexcept {
   limits_ = verdict.limits;
   motor_.derate(std::min(verdict.derating, reduced_.effortShare()));
   const auto fault = verdict.fault != FaultCode::kNone ? verdict.fault
-                     : too_fast                        ? FaultCode::kReducedSpeed
+                     : when_reduced == Trip::kFault    ? FaultCode::kReducedSpeed
                                                        : FaultCode::kNone;
-  if (fault == FaultCode::kNone) return false;
+  if (fault == FaultCode::kNone) return when_reduced;
   fault_ = fault;
-  return true;
+  return Trip::kFault;
 }
 
-bool Axis::tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
+Axis::Trip Axis::tripsWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
   using Motion = ReducedMotion::Motion;
-  // It is not taken away for a speed: a load would fall.
+  // A fallback that only resists is not ended for a speed: a load would fall.
   const bool resisted = fallback_.acts() && resists(fallback_.kind(), motor_.driveFrames());
   const Motion motion = !moves ? Motion::kNone : resisted ? Motion::kResisted : Motion::kLed;
   const bool too_fast = reduced_.step(reduced, motion, motor_.feedback(), tick);
   shaper_.setCeiling(reduced_.ceilingRpm());
-  if (!too_fast || !fallback_.acts()) return too_fast;
+  if (!too_fast) return Trip::kNone;
   const FrameKind resistance = resistanceOf(motor_.driveFrames());
-  if (resistance == FrameKind::kRest) return true;
+  if (!fallback_.acts() || resistance == FrameKind::kRest) return Trip::kFault;
   fallback_.giveWay(resistance);
-  return false;
+  return Trip::kResists;
 }
 
 RestCheck::Verdict Axis::checkRest(const Tick& tick) noexcept {

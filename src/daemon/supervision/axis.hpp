@@ -66,9 +66,18 @@ class Axis {
   [[nodiscard]] std::optional<std::uint32_t> complains(const Tick& tick) noexcept;
   /// The end of an enable sequence.
   [[nodiscard]] std::optional<MotorEvent> endsEnabling(const Tick& tick) const noexcept;
-  /// Limits and derating of this tick. A fault that the guard sees: fault() from now on.
-  /// `reduced`: the mode input asks for reduced speed and effort.
-  [[nodiscard]] bool trips(bool reduced, const Tick& tick) noexcept;
+  enum class Trip : std::uint8_t {
+    kNone,
+    kResists,  ///< Dragged too fast in reduced mode: resistance() acts in place of a fallback that could
+               ///< push.
+    kFault,    ///< fault() from now on.
+  };
+  /// Limits, derating and faults of this tick. `reduced`: the mode input asks for reduced speed and effort.
+  [[nodiscard]] Trip trips(bool reduced, const Tick& tick) noexcept;
+  /// Damp, or a brake that only resists: after Trip::kResists.
+  [[nodiscard]] FallbackAction resistance() const noexcept {
+    return fallback_.kind() == FrameKind::kBrake ? FallbackAction::kBrake : FallbackAction::kDamp;
+  }
   /// Whether its drive rests, while it is told to. RestCheck::Verdict::kDriven: fault() from now on, unless
   /// it is in FAULT for another reason.
   [[nodiscard]] RestCheck::Verdict checkRest(const Tick& tick) noexcept;
@@ -142,9 +151,9 @@ class Axis {
   /// Its drive stores settings, and may be silent meanwhile.
   [[nodiscard]] bool silenceExcused() noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
-  /// Speed and effort of reduced mode for this tick. True: it is faster than it may be, and no resistance can
-  /// take the place of what acts. Few motors have it.
-  [[nodiscard, gnu::noinline]] bool tooFastWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;
+  /// Speed and effort of reduced mode for this tick. Trip::kFault: it is faster than it may be, and no
+  /// resistance can take the place of what acts. Few motors have it.
+  [[nodiscard, gnu::noinline]] Trip tripsWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;
   /// For the loops of rc10d; `stops`: the motor is braked, or led to rest along a ramp.
   [[gnu::noinline]] void boundSpeeds(bool stops, MonotonicTime now) noexcept;
   /// Whether soft limits or reduced mode bound the speed of its loops.

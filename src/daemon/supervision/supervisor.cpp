@@ -56,7 +56,7 @@ void Supervisor::watch(std::size_t motor, const Axis::Since& since, const Tick& 
   if (axis.status() == MotorStatus::kEnabling) {
     if (const auto end = axis.endsEnabling(tick)) transition(motor, *end, tick);
   }
-  if (axis.trips(reduced_, tick)) fault(motor, 0, tick);
+  if (const auto trip = axis.trips(reduced_, tick); trip != Axis::Trip::kNone) tellTrip(motor, trip, tick);
   if (foreign_.tookOver(motor)) {
     if (const auto by = foreign_.takeover(motor); by && axis.yields()) fault(motor, *by, tick);
   }
@@ -66,6 +66,12 @@ void Supervisor::watch(std::size_t motor, const Axis::Since& since, const Tick& 
     report({EventCode::kCommandTimeout, Severity::kWarning, who,
             static_cast<std::int32_t>(axis.timeoutAction()), 0, tick.now});
   }
+}
+
+void Supervisor::tellTrip(std::size_t motor, Axis::Trip trip, const Tick& tick) noexcept {
+  if (trip == Axis::Trip::kFault) return fault(motor, 0, tick);
+  report({EventCode::kFallbackReplaced, Severity::kWarning, static_cast<std::int16_t>(motor),
+          static_cast<std::int32_t>(axes_[motor].resistance()), 0, tick.now});
 }
 
 void Supervisor::fault(std::size_t motor, std::int32_t native_code, const Tick& tick) noexcept {

@@ -137,6 +137,7 @@ class Supervisor {
   void watch(std::size_t motor, const Axis::Since& since, const Tick& tick) noexcept;
   /// Reports the fault that its Axis has just found.
   [[gnu::noinline]] void fault(std::size_t motor, std::int32_t native_code, const Tick& tick) noexcept;
+  [[gnu::noinline]] void tellTrip(std::size_t motor, Axis::Trip trip, const Tick& tick) noexcept;
   [[gnu::noinline]] void tellUnrest(std::size_t motor, RestCheck::Verdict verdict, const Tick& tick) noexcept;
   void watchGroup(std::size_t index, const Tick& tick) noexcept;
   void stopGroup(std::size_t index, GroupStop reason, const Tick& tick) noexcept;

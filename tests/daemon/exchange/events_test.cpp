@@ -19,14 +19,14 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr std::array kCodes{
-    EventCode::kMotorStatus,     EventCode::kCommandTimeout, EventCode::kReferenceLost,
-    EventCode::kSetpointSkipped, EventCode::kNotOwner,       EventCode::kMotorFault,
-    EventCode::kGroupStopped,    EventCode::kGroupRearmed,   EventCode::kModule,
-    EventCode::kModuleRefused,   EventCode::kGainChanged,    EventCode::kRobotState,
-    EventCode::kTicksMissed,     EventCode::kCommandRefused, EventCode::kEstopInput,
-    EventCode::kBusState,        EventCode::kBusAdvice,      EventCode::kForeignSender,
-    EventCode::kSerialPort,      EventCode::kDevice,         EventCode::kMovesAtRest,
-    EventCode::kNeverHeard};
+    EventCode::kMotorStatus,     EventCode::kCommandTimeout,  EventCode::kReferenceLost,
+    EventCode::kSetpointSkipped, EventCode::kNotOwner,        EventCode::kMotorFault,
+    EventCode::kGroupStopped,    EventCode::kGroupRearmed,    EventCode::kModule,
+    EventCode::kModuleRefused,   EventCode::kGainChanged,     EventCode::kRobotState,
+    EventCode::kTicksMissed,     EventCode::kCommandRefused,  EventCode::kEstopInput,
+    EventCode::kBusState,        EventCode::kBusAdvice,       EventCode::kForeignSender,
+    EventCode::kSerialPort,      EventCode::kDevice,          EventCode::kMovesAtRest,
+    EventCode::kNeverHeard,      EventCode::kFallbackReplaced};
 
 template <typename Value, typename Extra = int>
 std::string words(EventCode code, Value value, Extra extra = {}) {
@@ -49,8 +49,8 @@ TEST(Events, EveryCodeHasWordsOfItsOwn) {
 }
 
 TEST(Events, TheNumbersAreThoseOfTheContract) {
-  constexpr std::array kNumbers{100, 101, 102, 103, 104, 105, 106, 107, 108, 109, 110,
-                                200, 201, 202, 203, 300, 301, 302, 310, 311, 111, 112};
+  constexpr std::array kNumbers{100, 101, 102, 103, 104, 105, 106, 107, 108, 109, 110, 200,
+                                201, 202, 203, 300, 301, 302, 310, 311, 111, 112, 113};
   static_assert(kNumbers.size() == kCodes.size());
   for (std::size_t i = 0; i < kCodes.size(); ++i) EXPECT_EQ(static_cast<int>(kCodes[i]), kNumbers[i]);
 }

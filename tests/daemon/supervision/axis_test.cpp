@@ -229,11 +229,11 @@ TEST_F(AxisTest, OneThatIsTooHotTripsFromItsEnablingOn) {
   };
   hear_hot();
   (void)axis.handle(MotorEvent::kFeedbackFresh, RobotStatus::kRun, {}, now());
-  EXPECT_FALSE(axis.trips(false, now())) << "at rest it cools down";
+  EXPECT_EQ(axis.trips(false, now()), Axis::Trip::kNone) << "at rest it cools down";
   axis.prepareEnabling(now());
   (void)axis.handle(MotorEvent::kEnable, RobotStatus::kRun, {}, now());
   hear_hot();
-  EXPECT_TRUE(axis.trips(false, now()));
+  EXPECT_EQ(axis.trips(false, now()), Axis::Trip::kFault);
   EXPECT_EQ(axis.fault(), FaultCode::kOverheated);
 }
 

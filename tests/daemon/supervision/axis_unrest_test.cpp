@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/load_config.hpp"
 #include "daemon/virtual_robot.hpp"
@@ -113,12 +114,30 @@ struct Dragged {
   const char* motor;
   const char* keys;
   Acting left;  ///< kNothing: a fault.
+
+  /// What is left is not what the keys ask for.
+  [[nodiscard]] bool replaced() const {
+    return left != Acting::kNothing &&
+           !std::string_view{keys}.starts_with(left == Acting::kDamp ? "damp" : "brake");
+  }
 };
 
 void PrintTo(const Dragged& dragged, std::ostream* out) { *out << dragged.motor << ", " << dragged.keys; }
 
 class DraggedInReducedMode : public ::testing::TestWithParam<Dragged> {
  protected:
+  /// Since the last call: actions that took the place of a fallback.
+  static std::vector<FallbackAction> replacements(VirtualRobot& robot) {
+    std::vector<FallbackAction> actions;
+    for (const auto& event : robot.events()) {
+      if (event.code != EventCode::kFallbackReplaced) continue;
+      EXPECT_EQ(event.severity, Severity::kWarning);
+      EXPECT_EQ(event.source, static_cast<std::int16_t>(kWheel));
+      actions.push_back(static_cast<FallbackAction>(event.value));
+    }
+    return actions;
+  }
+
   static void enable(VirtualRobot& robot) {
     for (int i = 0; i < 3000 && robot.motor(kWheel).status != MotorStatus::kReady; ++i) robot.run(1);
     for (int attempt = 0; attempt < 5; ++attempt) {
@@ -154,6 +173,10 @@ TEST_P(DraggedInReducedMode, NoPushGoesOnAndNoResistanceEnds) {
     const bool is_ramp = std::string_view{dragged.keys}.find("ramp") == 0;
     EXPECT_EQ(robot.motor(kWheel).acting, is_ramp ? Acting::kNothing : dragged.left)
         << "a ramp ends when it would have";
+    std::vector<FallbackAction> told;
+    if (dragged.replaced())
+      told = {dragged.left == Acting::kDamp ? FallbackAction::kDamp : FallbackAction::kBrake};
+    EXPECT_EQ(replacements(robot), told) << "once, " << estop;
   }
 }
 
