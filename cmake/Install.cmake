@@ -32,10 +32,12 @@ install(FILES systemd/udev/60-rc10d.rules DESTINATION lib/udev/rules.d)
 
 # One archive of the layers, so that nobody has to know their order.
 set(rc10_embedded)
+set(archived rc10_robot_client)
 foreach(layer app bus motor module sim drives_motors drives_by_frames drives config link survey blackbox daemon)
   get_target_property(kind rc10_${layer} TYPE)
   if(kind STREQUAL "STATIC_LIBRARY")
     list(APPEND rc10_embedded $<TARGET_OBJECTS:rc10_${layer}>)
+    list(APPEND archived rc10_${layer})
   endif()
 endforeach()
 include(PublicApi)
@@ -70,14 +72,15 @@ install(TARGETS rc10_embed EXPORT rc10Targets ARCHIVE DESTINATION ${CMAKE_INSTAL
 install(TARGETS rc10_client_lib rc10_client_lib_static EXPORT rc10ClientTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT client NAMELINK_COMPONENT dev
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
-if(CMAKE_INTERPROCEDURAL_OPTIMIZATION AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # No archive is made of these: ordinary code, which the linker makes anew, would be compiled for nothing.
-  foreach(target rc10_client rc10_doctor rc10_guard rc10_robot_file rc10_sandbox rc10_gateway rc10_web
-          rc10d rc10-lcm rc10ctl rc10-stop rc10-guard rc10-irq rc10-web rc10-config rc10-sim)
-    target_compile_options(${target} PRIVATE -fno-fat-lto-objects)
-  endforeach()
-endif()
 if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # No archive is made of these: ordinary code, which the linker makes anew, would be compiled for nothing.
+    get_property(linked GLOBAL PROPERTY RC10_COMPILED)
+    list(REMOVE_ITEM linked ${archived})
+    foreach(target ${linked})
+      target_compile_options(${target} PRIVATE -fno-fat-lto-objects)
+    endforeach()
+  endif()
   # Sections that only this version of the compiler can read go.
   foreach(archive rc10_embed rc10_client_lib_static)
     install(CODE "execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug -R .gnu.lto_* -N __gnu_lto_v1

@@ -1,0 +1,106 @@
+#include "motor/bus_use.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+
+#include "drives/families.hpp"
+#include "support/own_defaults.hpp"
+
+namespace rc10::test::bus_use_test {
+namespace {
+
+/// All frames of the one are frames of the other.
+bool within(const FrameFilter& narrow, const FrameFilter& wide) {
+  if (narrow.id.extended != wide.id.extended) return false;
+  const std::uint32_t wanted = wide.mask & idMask(wide.id.extended);
+  if ((wanted & ~narrow.mask) != 0 || ((narrow.id.value ^ wide.id.value) & wanted) != 0) return false;
+  return std::all_of(wide.discriminators.begin(), wide.discriminators.end(), [&narrow](const auto& byte) {
+    return !byte ||
+           std::any_of(narrow.discriminators.begin(), narrow.discriminators.end(), [&byte](const auto& own) {
+             return own && own->byte_index == byte->byte_index && (byte->mask & ~own->mask) == 0 &&
+                    ((own->value ^ byte->value) & byte->mask) == 0;
+           });
+  });
+}
+
+bool withinAny(const FrameFilter& narrow, const std::vector<FrameFilter>& wide) {
+  return std::any_of(wide.begin(), wide.end(),
+                     [&narrow](const FrameFilter& filter) { return within(narrow, filter); });
+}
+
+bool anyHasId(const std::vector<FrameFilter>& filters, CanId id) {
+  return std::any_of(filters.begin(), filters.end(), [id](FrameFilter filter) {
+    filter.discriminators = {};
+    return within({.id = id}, filter);
+  });
+}
+
+std::string textOf(const FrameFilter& filter) {
+  return describe(filter.id) + " with mask " + std::to_string(filter.mask);
+}
+
+/// Values of choices and flags, one at a time, beside the defaults of the others.
+std::vector<MotorSettings> variants(const MotorFamily& family, std::string_view model, int id) {
+  std::vector<MotorSettings> all{defaultSettings(family, model, id)};
+  all.front().effort_limit = 1.0F;
+  all.front().velocity_limit_rpm = 100.0F;
+  for (const OwnKey& key : family.keys()) {
+    if (key.required) all.front().own.set(key.name, std::max(1.0, key.min));
+    const auto with = [&](OwnValues::Value value) {
+      all.push_back(all.front());
+      all.back().own.set(key.name, std::move(value));
+    };
+    for (const auto choice : key.choices) with(std::string{choice});
+    if (key.kind == OwnKey::Kind::kFlag) with(1.0);
+  }
+  std::erase_if(all, [&family](const MotorSettings& settings) { return !family.check(settings); });
+  return all;
+}
+
+/// All models of all families, with all of their ids.
+void eachUse(const std::function<void(const BusUse&)>& look) {
+  for (const auto& entry : builtInFamilies()) {
+    for (const auto model : entry.family->models()) {
+      const auto traits = entry.family->traits(model, ownDefaults(*entry.family));
+      bool looked = false;
+      for (int id = traits.min_id; id <= traits.max_id; ++id) {
+        for (const MotorSettings& settings : variants(*entry.family, model, id)) {
+          SCOPED_TRACE(std::string{model} + " with id " + std::to_string(id));
+          look(entry.family->busUse(settings));
+          looked = true;
+          if (::testing::Test::HasFailure()) return;  // one says it
+        }
+      }
+      EXPECT_TRUE(looked) << model;
+    }
+  }
+}
+
+TEST(BusUse, WhatSteersADriveIsAmongWhatItObeys) {
+  eachUse([](const BusUse& use) {
+    for (const auto& filter : use.steering()) EXPECT_TRUE(withinAny(filter, use.obeys)) << textOf(filter);
+  });
+}
+
+// A stranger's frame is compared with all of them, in the tick, for each motor of its bus.
+TEST(BusUse, ADriveObeysFewRangesOfIds) {
+  eachUse([](const BusUse& use) {
+    EXPECT_FALSE(use.obeys.empty());
+    EXPECT_LE(use.obeys.size(), 6U);
+  });
+}
+
+TEST(BusUse, CommandsHaveIdsThatTheDriveObeysAndFeedbackThoseThatItSends) {
+  eachUse([](const BusUse& use) {
+    for (const auto& command : use.commands)
+      EXPECT_TRUE(anyHasId(use.obeys, command.id)) << describe(command.id);
+    for (const auto& answer : use.feedback)
+      EXPECT_TRUE(anyHasId(use.sends, answer.id)) << describe(answer.id);
+  });
+}
+
+}  // namespace
+}  // namespace rc10::test::bus_use_test
