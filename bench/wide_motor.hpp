@@ -15,8 +15,7 @@ namespace rc10::bench {
 class WideMotor : public DJI_Motor {
  public:
   WideMotor(const MotorSettings& settings, CanId feedback_id)
-      : DJI_Motor(settings),
-        filters_{FrameFilter{.id = feedback_id, .mask = kStandardIdMask, .discriminator = {}}} {}
+      : DJI_Motor(settings), filters_{FrameFilter{.id = feedback_id, .mask = kStandardIdMask}} {}
 
   [[nodiscard]] std::span<const FrameFilter> filters() const noexcept override { return filters_; }
   [[nodiscard]] bool matchesFrame(const CanFrame& frame) const noexcept override {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,8 +10,8 @@
 
 namespace rc10 {
 
-/// One byte of the payload that tells apart devices that share an id: Damiao drives on one master id
-/// differ in the low nibble of byte 0.
+/// One byte of the payload that tells apart devices that share an id, or the commands of one: Damiao drives
+/// on one master id differ in the low nibble of byte 0.
 struct PayloadDiscriminator {
   std::uint8_t byte_index = 0;
   std::uint8_t mask = 0xFF;
@@ -18,18 +19,19 @@ struct PayloadDiscriminator {
 };
 
 /// A set of data frames a device listens to: `(frame.id & mask) == (id & mask)` among the standard or
-/// the extended ids, and the discriminators if there are any: a payload too short to have the byte is not
+/// the extended ids, and all discriminators that there are: a payload too short to have such a byte is not
 /// in the set. Remote and error frames belong to no device.
 struct FrameFilter {
   CanId id;
   std::uint32_t mask = kExtendedIdMask;  ///< RobStride carries the motor id inside a varying extended id.
-  std::optional<PayloadDiscriminator> discriminator{};
-  std::optional<PayloadDiscriminator>
-      also{};  ///< Second byte, only beside the first: the operation of an id.
+  std::array<std::optional<PayloadDiscriminator>, 2> discriminators{};
 };
 
 /// True if some frame could satisfy both filters.
 [[nodiscard]] bool overlaps(const FrameFilter& a, const FrameFilter& b) noexcept;
+
+/// The lowest id that satisfies both filters of a pair that overlaps().
+[[nodiscard]] CanId commonId(const FrameFilter& a, const FrameFilter& b) noexcept;
 
 /// True if the frame satisfies the filter.
 [[nodiscard]] bool accepts(const FrameFilter& filter, const CanFrame& frame) noexcept;

@@ -13,11 +13,6 @@ std::uint32_t effectiveMask(const FrameFilter& filter) noexcept {
   return filter.mask & idMask(filter.id.extended);
 }
 
-// The lowest id that both filters accept.
-CanId commonId(const FrameFilter& a, const FrameFilter& b) noexcept {
-  return {(a.id.value & effectiveMask(a)) | (b.id.value & effectiveMask(b)), a.id.extended};
-}
-
 }  // namespace
 
 Result<void> FrameTable::checkFilters(const FrameListener& device) const {
@@ -25,9 +20,9 @@ Result<void> FrameTable::checkFilters(const FrameListener& device) const {
     if ((filter.id.value & ~idMask(filter.id.extended)) != 0) {
       return fail(quoted(device) + ": " + describe(filter.id) + " is out of range");
     }
-    if (filter.discriminator && filter.discriminator->byte_index >= kMaxPayload) {
-      return fail(quoted(device) + ": no frame has a payload byte " +
-                  std::to_string(filter.discriminator->byte_index));
+    for (const auto& wanted : filter.discriminators) {
+      if (!wanted || wanted->byte_index < kMaxPayload) continue;
+      return fail(quoted(device) + ": no frame has a payload byte " + std::to_string(wanted->byte_index));
     }
   }
   return {};
@@ -90,8 +85,10 @@ Result<void> FrameTable::add(FrameListener& device) {
     }
   }
   const auto filters = device.filters();
-  const bool by_id = std::none_of(filters.begin(), filters.end(),
-                                  [](const FrameFilter& filter) { return filter.discriminator.has_value(); });
+  const bool by_id = std::none_of(filters.begin(), filters.end(), [](const FrameFilter& filter) {
+    return std::any_of(filter.discriminators.begin(), filter.discriminators.end(),
+                       [](const auto& wanted) { return wanted.has_value(); });
+  });
   devices_[size_++] = {&device, filters, by_id};
   return {};
 }

@@ -48,7 +48,7 @@ inline FrameFilter robStrideFilter(std::uint32_t motor_id) {
 /// Damiao: all drives answer on the master id, and say who they are in the low nibble of byte 0.
 inline FrameFilter damiaoFilter(std::uint32_t master_id, std::uint8_t motor_id) {
   return {.id = {master_id, false},
-          .discriminator = PayloadDiscriminator{.byte_index = 0, .mask = 0x0F, .value = motor_id}};
+          .discriminators = {PayloadDiscriminator{.byte_index = 0, .mask = 0x0F, .value = motor_id}}};
 }
 
 /// Sends `frames_per_tick` frames with its id; byte 0 is the frame's number in the tick, byte 1 the low

@@ -14,7 +14,7 @@ CanFrame frameWith(CanId id, std::initializer_list<std::uint8_t> payload = {}) {
 }
 
 FrameFilter withByte(FrameFilter filter, std::uint8_t index, std::uint8_t mask, std::uint8_t value) {
-  filter.discriminator = PayloadDiscriminator{index, mask, value};
+  filter.discriminators[0] = PayloadDiscriminator{index, mask, value};
   return filter;
 }
 
@@ -55,7 +55,7 @@ TEST(FrameFilter, RefusesAFrameTooShortToHaveTheByte) {
 
 TEST(FrameFilter, ASecondByteMustFitAsWell) {
   FrameFilter filter = withByte(standardFilter(0x7FF), 0, 0xFF, 1);
-  filter.also = PayloadDiscriminator{.byte_index = 2, .value = 0x55};
+  filter.discriminators[1] = PayloadDiscriminator{.byte_index = 2, .value = 0x55};
   EXPECT_TRUE(accepts(filter, frameWith({0x7FF, false}, {1, 0, 0x55, 9})));
   EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {1, 0, 0x33, 9})));
   EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {2, 0, 0x55, 9})));
@@ -63,6 +63,21 @@ TEST(FrameFilter, ASecondByteMustFitAsWell) {
   EXPECT_TRUE(overlaps(filter, withByte(standardFilter(0x7FF), 2, 0xFF, 0x55)));
   EXPECT_FALSE(overlaps(filter, withByte(standardFilter(0x7FF), 2, 0xFF, 0x33)));
   EXPECT_FALSE(overlaps(withByte(standardFilter(0x7FF), 0, 0xFF, 2), filter));
+}
+
+TEST(FrameFilter, ASecondByteMayStandAlone) {
+  FrameFilter filter = standardFilter(0x7FF);
+  filter.discriminators[1] = PayloadDiscriminator{.byte_index = 2, .value = 0x55};
+  EXPECT_TRUE(accepts(filter, frameWith({0x7FF, false}, {1, 0, 0x55})));
+  EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {1, 0, 0x33})));
+  EXPECT_FALSE(overlaps(filter, withByte(standardFilter(0x7FF), 2, 0xFF, 0x33)));
+}
+
+TEST(FrameFilter, OneThatContradictsItselfOverlapsNone) {
+  FrameFilter filter = withByte(standardFilter(0x7FF), 0, 0x0F, 1);
+  filter.discriminators[1] = PayloadDiscriminator{.byte_index = 0, .mask = 0x03, .value = 2};
+  EXPECT_FALSE(accepts(filter, frameWith({0x7FF, false}, {1})));
+  EXPECT_FALSE(overlaps(filter, standardFilter(0x7FF)));
 }
 
 TEST(FrameFilter, AcceptsNeitherRemoteNorErrorFrames) {

@@ -115,6 +115,17 @@ TEST_F(FrameTableTest, DevicesOnOneIdAreToldApartByThePayload) {
   EXPECT_EQ(find(frameWith({0x00, false})), nullptr);
 }
 
+TEST_F(FrameTableTest, ADeviceAloneOnItsIdIsToldByEachOfItsBytes) {
+  for (const std::size_t place : {0U, 1U}) {
+    FrameFilter filter = standardFilter(0x20 + static_cast<std::uint32_t>(place));
+    filter.discriminators[place] = PayloadDiscriminator{.byte_index = 2, .value = 0x55};
+    FakeDevice& device = add("d" + std::to_string(place), {filter});
+    EXPECT_EQ(find(frameWith(filter.id, {0, 0, 0x55})), &device) << place;
+    EXPECT_EQ(find(frameWith(filter.id, {0, 0, 0x33})), nullptr) << place;
+    EXPECT_EQ(find(frameWith(filter.id, {0, 0})), nullptr) << place;
+  }
+}
+
 TEST_F(FrameTableTest, TheDeviceHasTheLastWord) {
   FakeDevice& device = add("picky", {standardFilter(0x201)});
   device.matches = false;
@@ -182,9 +193,11 @@ TEST_F(FrameTableTest, RefusesAnIdThatDoesNotExist) {
 }
 
 TEST_F(FrameTableTest, RefusesADiscriminatorBeyondTheLongestPayload) {
-  FrameFilter filter = standardFilter(1);
-  filter.discriminator = PayloadDiscriminator{.byte_index = 64};
-  EXPECT_THAT(refusal("deep", {filter}), AllOf(HasSubstr("'deep'"), HasSubstr("byte 64")));
+  for (const std::size_t place : {0U, 1U}) {
+    FrameFilter filter = standardFilter(1);
+    filter.discriminators[place] = PayloadDiscriminator{.byte_index = 64};
+    EXPECT_THAT(refusal("deep", {filter}), AllOf(HasSubstr("'deep'"), HasSubstr("byte 64"))) << place;
+  }
 }
 
 TEST_F(FrameTableTest, HoldsThirtyTwoDevicesAndRefusesTheNext) {

@@ -60,8 +60,9 @@ FrameFilter randomFilter(FuzzedDataProvider& data) {
     const auto ignored = data.ConsumeIntegralInRange<std::uint32_t>(0, kLargest);
     filter.mask = ~spread(ignored, filter.id.extended);
   }
-  if (data.ConsumeBool()) {
-    filter.discriminator = PayloadDiscriminator{
+  for (auto& wanted : filter.discriminators) {
+    if (!data.ConsumeBool()) continue;
+    wanted = PayloadDiscriminator{
         static_cast<std::uint8_t>(data.ConsumeIntegralInRange<std::size_t>(0, kBytes - 1)),
         data.ConsumeIntegral<std::uint8_t>(), data.ConsumeIntegral<std::uint8_t>()};
   }
@@ -74,26 +75,38 @@ bool naivelyAccepts(const FrameFilter& filter, CanId id, std::span<const std::ui
     const bool wanted = (filter.mask >> bit & 1U) != 0;
     if (wanted && (filter.id.value >> bit & 1U) != (id.value >> bit & 1U)) return false;
   }
-  if (!filter.discriminator) return true;
-  const auto& [index, mask, value] = *filter.discriminator;
-  return index < payload.size() && (payload[index] & mask) == (value & mask);
+  for (const auto& wanted : filter.discriminators) {
+    if (!wanted) continue;
+    const auto& [index, mask, value] = *wanted;
+    if (index >= payload.size() || (payload[index] & mask) != (value & mask)) return false;
+  }
+  return true;
 }
 
-// Tries every id of the model with every value of the bytes that either filter looks at.
-bool naivelyOverlap(const FrameFilter& a, const FrameFilter& b) {
-  const auto byteOf = [](const FrameFilter& f) { return f.discriminator ? f.discriminator->byte_index : 0; };
+// Some value of this byte suits both filters.
+bool naivelyShareByte(const FrameFilter& a, const FrameFilter& b, std::size_t byte) {
+  for (unsigned value = 0; value <= 0xFF; ++value) {
+    bool suits = true;
+    for (const FrameFilter* filter : {&a, &b}) {
+      for (const auto& wanted : filter->discriminators)
+        suits = suits && (!wanted || wanted->byte_index != byte ||
+                          (value & wanted->mask) == (wanted->value & wanted->mask));
+    }
+    if (suits) return true;
+  }
+  return false;
+}
+
+// Tries every id of the model, and of each byte, as they say nothing of one another, every value.
+bool naivelyOverlap(FrameFilter a, FrameFilter b) {
+  for (std::size_t byte = 0; byte < kBytes; ++byte) {
+    if (!naivelyShareByte(a, b, byte)) return false;
+  }
+  a.discriminators = {};
+  b.discriminators = {};
   for (std::uint32_t small = 0; small < (1U << kIdBits); ++small) {
     const CanId id{spread(small, a.id.extended), a.id.extended};
-    std::array<std::uint8_t, kBytes> payload{};
-    if (a.discriminator) payload[static_cast<std::size_t>(byteOf(a))] = a.discriminator->value;
-    if (b.discriminator && byteOf(a) != byteOf(b)) {
-      payload[static_cast<std::size_t>(byteOf(b))] = b.discriminator->value;
-    }
-    std::uint8_t& tried = payload[static_cast<std::size_t>(byteOf(b))];
-    const std::uint8_t first = tried;
-    do {
-      if (naivelyAccepts(a, id, payload) && naivelyAccepts(b, id, payload)) return true;
-    } while (++tried != first);
+    if (naivelyAccepts(a, id, {}) && naivelyAccepts(b, id, {})) return true;
   }
   return false;
 }

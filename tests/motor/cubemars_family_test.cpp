@@ -92,7 +92,7 @@ TEST(CubemarsFamily, TellsEveryIdOnTheBus) {
   use = family.busUse(mit());
   ASSERT_EQ(use.sends.size(), 2U);
   EXPECT_EQ(use.sends[0].id, (CanId{0, false}));
-  EXPECT_EQ(use.sends[0].discriminator->value, 5);
+  EXPECT_EQ(use.sends[0].discriminators[0]->value, 5);
   EXPECT_EQ(use.feedback[0].per_second, 1000.0);
 }
 

@@ -82,7 +82,7 @@ KnownMotor damiao(std::uint32_t master_id, std::uint8_t id) {
           id,
           {FrameFilter{.id = {master_id, false},
                        .mask = kStandardIdMask,
-                       .discriminator = PayloadDiscriminator{0, 0x0F, id}}},
+                       .discriminators = {PayloadDiscriminator{0, 0x0F, id}}}},
           {}};
 }
 

@@ -22,11 +22,6 @@ struct Device {
   return {&draft, draft.config.family->busUse(draft.config.settings)};
 }
 
-/// An id that satisfies both filters, for the message.
-[[nodiscard]] CanId commonId(const FrameFilter& a, const FrameFilter& b) noexcept {
-  return {((a.id.value & a.mask) | (b.id.value & b.mask)) & idMask(a.id.extended), a.id.extended};
-}
-
 [[nodiscard]] std::optional<CanId> common(const std::vector<FrameFilter>& some,
                                           const std::vector<FrameFilter>& others) {
   for (const auto& one : some) {

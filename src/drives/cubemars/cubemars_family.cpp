@@ -177,8 +177,8 @@ class CubemarsFamily final : public MotorFamily {
     if (own.protocol == CubemarsProtocol::kMit) {
       const PayloadDiscriminator sender{.value = static_cast<std::uint8_t>(settings.id)};
       const CanId id = cubemars::mitId(settings.id);
-      use.sends = {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = sender},
-                   {.id = id, .mask = kStandardIdMask, .discriminator = sender}};
+      use.sends = {{.id = {0, false}, .mask = kStandardIdMask, .discriminators = {sender}},
+                   {.id = id, .mask = kStandardIdMask, .discriminators = {sender}}};
       use.obeys = {{.id = id, .mask = kStandardIdMask}};
       use.commands = {{.id = id, .shape = {.length = 8}, .per_second = told}};
       use.feedback = {{.id = {0, false}, .shape = {.length = 8}, .per_second = told}};

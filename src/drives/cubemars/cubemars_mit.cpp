@@ -56,8 +56,8 @@ CubemarsMit::CubemarsMit(const MotorSettings& settings, const CubemarsSettings& 
     // byte tells whose they are.
     const PayloadDiscriminator sender{.byte_index = 0, .mask = 0xFF, .value = id};
     filters_ = {
-        FrameFilter{.id = {0, false}, .mask = kStandardIdMask, .discriminator = sender},
-        FrameFilter{.id = cubemars::mitId(settings.id), .mask = kStandardIdMask, .discriminator = sender}};
+        FrameFilter{.id = {0, false}, .mask = kStandardIdMask, .discriminators = {sender}},
+        FrameFilter{.id = cubemars::mitId(settings.id), .mask = kStandardIdMask, .discriminators = {sender}}};
     command_ids_.fill(cubemars::mitId(settings.id));
   }
 }

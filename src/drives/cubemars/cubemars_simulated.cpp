@@ -24,7 +24,7 @@ constexpr Duration kStartUp = std::chrono::milliseconds{300};  // assumed
 std::vector<FrameFilter> cubemarsSends(const MotorSettings& settings, const CubemarsSettings& own) {
   if (own.protocol != CubemarsProtocol::kMit) return {{.id = cubemars::servoFeedbackId(settings.id)}};
   const PayloadDiscriminator sender{.value = static_cast<std::uint8_t>(settings.id)};
-  return {{.id = {0, false}, .mask = kStandardIdMask, .discriminator = sender}};
+  return {{.id = {0, false}, .mask = kStandardIdMask, .discriminators = {sender}}};
 }
 
 double scaled(std::uint32_t code, double low, double high, double last_code) noexcept {

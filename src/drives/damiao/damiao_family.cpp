@@ -234,19 +234,20 @@ BusUse DamiaoFamily::busUse(const MotorSettings& settings) const {
   const double per_second = static_cast<double>(settings.tick_hz) / settings.command_divider;
   BusUse use;
   use.sends = {
-      {.id = master_id, .mask = kStandardIdMask, .discriminator = PayloadDiscriminator{0, 0x0F, byte}}};
+      {.id = master_id, .mask = kStandardIdMask, .discriminators = {PayloadDiscriminator{0, 0x0F, byte}}}};
   use.obeys = {{.id = {id, false}, .mask = damiao::kAddressMask},
                {.id = {damiao::kRegisterId, false},
                 .mask = kStandardIdMask,
-                .discriminator = PayloadDiscriminator{0, 0xFF, byte}}};
+                .discriminators = {PayloadDiscriminator{0, 0xFF, byte}}}};
   // One id for each control mode. The drive also takes others that end in its id; devices may have those.
   for (std::uint32_t mode = 0; mode < 4; ++mode)
     use.steers.push_back({.id = {mode * 0x100U + id, false}, .mask = kStandardIdMask});
   // A register that is written may be a scale, the control mode or the watchdog.
-  use.steers.push_back({.id = {damiao::kRegisterId, false},
-                        .mask = kStandardIdMask,
-                        .discriminator = PayloadDiscriminator{.byte_index = 0, .value = byte},
-                        .also = PayloadDiscriminator{.byte_index = 2, .value = damiao::kWriteOperation}});
+  use.steers.push_back(
+      {.id = {damiao::kRegisterId, false},
+       .mask = kStandardIdMask,
+       .discriminators = {PayloadDiscriminator{.byte_index = 0, .value = byte},
+                          PayloadDiscriminator{.byte_index = 2, .value = damiao::kWriteOperation}}});
   use.feedback = {{master_id, shape(8), per_second}};
   use.commands = {{control_id, shape(own.control == DamiaoControl::kVelocity ? 4 : 8), per_second}};
   return use;

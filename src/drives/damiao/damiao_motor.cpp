@@ -38,7 +38,7 @@ Damiao_Motor::Damiao_Motor(const MotorSettings& settings)
       filters_{FrameFilter{
           .id = {own_.master_id, false},
           .mask = kStandardIdMask,
-          .discriminator = PayloadDiscriminator{0, 0x0F, static_cast<std::uint8_t>(settings.id)}}},
+          .discriminators = {PayloadDiscriminator{0, 0x0F, static_cast<std::uint8_t>(settings.id)}}}},
       // Special frames go to the id of the mode as well: the manual and the vendor's routine say so, and new
       // firmware looks at the low byte only.
       command_ids_{CanId{

@@ -33,7 +33,7 @@ DJI_Motor::DJI_Motor(const MotorSettings& settings, const DjiModel& model)
       zero_at_power_on_(settings.zero_at_power_on),
       zero_deg_(settings.zero_deg),
       travel_(settings.travel),
-      filters_{FrameFilter{.id = djiFeedbackId(*model_, id_), .mask = kStandardIdMask, .discriminator = {}}},
+      filters_{FrameFilter{.id = djiFeedbackId(*model_, id_), .mask = kStandardIdMask}},
       encoder_(model_->encoder),
       loops_(settings.loops),
       spacing_(std::chrono::milliseconds{1}),

@@ -109,7 +109,7 @@ class LktechFamily final : public MotorFamily {
     // 0x9B clears the error that has stopped it.
     for (const auto code : {PayloadDiscriminator{0, 0xF0, 0xA0}, PayloadDiscriminator{0, 0xFE, 0x80},
                             PayloadDiscriminator{0, 0xFB, 0x88}, PayloadDiscriminator{0, 0xFF, 0x9B}})
-      use.steers.push_back({.id = {own_id, false}, .mask = kStandardIdMask, .discriminator = code});
+      use.steers.push_back({.id = {own_id, false}, .mask = kStandardIdMask, .discriminators = {code}});
     use.steers.insert(use.steers.end(), use.obeys.begin() + 1, use.obeys.end());
     use.feedback = {{.id = {own_id, false}, .shape = {}, .per_second = told_hz + kQueriesHz}};
     if (grouped) {

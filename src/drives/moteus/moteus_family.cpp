@@ -143,12 +143,12 @@ class MoteusFamily final : public MotorFamily {
     }
     // Commands begin with a write of a register (0x00 to 0x0F), questions with a read.
     use.steers = use.obeys;
-    for (auto& filter : use.steers) filter.discriminator = PayloadDiscriminator{0, 0xF0, 0x00};
+    for (auto& filter : use.steers) filter.discriminators = {PayloadDiscriminator{0, 0xF0, 0x00}};
     // A vendor's tool writes "d pos", "d stop" to the drive's console: a stream of bytes (0x40, channel,
     // length) in which other commands have other first letters. Source: docs/protocol/can.md.
     for (auto filter : use.obeys) {
-      filter.discriminator = PayloadDiscriminator{.byte_index = 0, .value = 0x40};
-      filter.also = PayloadDiscriminator{.byte_index = 3, .value = 'd'};
+      filter.discriminators = {PayloadDiscriminator{.byte_index = 0, .value = 0x40},
+                               PayloadDiscriminator{.byte_index = 3, .value = 'd'}};
       use.steers.push_back(filter);
     }
     const auto shape = [&own](CanId of, std::size_t length) {

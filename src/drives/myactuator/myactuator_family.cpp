@@ -122,7 +122,7 @@ class MyactuatorFamily final : public MotorFamily {
     for (const auto request : {myactuator::kRequestBase + id, myactuator::kBroadcastId}) {
       for (const auto code : {PayloadDiscriminator{0, 0xF0, 0xA0}, PayloadDiscriminator{0, 0xFE, 0x80},
                               PayloadDiscriminator{0, 0xFE, 0x76}, PayloadDiscriminator{0, 0xFF, 0x78}})
-        use.steers.push_back({.id = {request, false}, .mask = kStandardIdMask, .discriminator = code});
+        use.steers.push_back({.id = {request, false}, .mask = kStandardIdMask, .discriminators = {code}});
     }
     use.steers.push_back(one(myactuator::kMotionBase + id));
     use.feedback = {{.id = use.sends[0].id, .shape = {}, .per_second = all_hz}};

@@ -106,24 +106,30 @@ class OdriveFamily : public MotorFamily {
     const int node = settings.id;
     const auto* row = findOdriveModel(settings.model);
     const bool v06 = row == nullptr || row->firmware == OdriveFirmware::k06;
-    const FrameFilter own_block{
-        .id = odrive::canId(node, odrive::Message{}), .mask = odrive::kNodeMask, .discriminator = {}};
+    const FrameFilter own_block{.id = odrive::canId(node, odrive::Message{}), .mask = odrive::kNodeMask};
     BusUse use;
     use.sends = {own_block};
     use.obeys = {own_block};
-    if (v06) use.obeys.push_back({.id = kAddressBroadcast, .mask = kStandardIdMask, .discriminator = {}});
+    if (v06) use.obeys.push_back({.id = kAddressBroadcast, .mask = kStandardIdMask});
     using odrive::Message;
+    const auto steered_by = [&use, node](Message message) {
+      use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
+    };
     for (const auto message :
          {Message::kEstop, Message::kSetAxisState, Message::kSetControllerMode, Message::kSetInputPos,
           Message::kSetInputVel, Message::kSetInputTorque, Message::kSetLimits, Message::kReboot,
           Message::kClearErrors, Message::kSetPosition, Message::kSetTrajVelocity,
           Message::kSetTrajAcceleration, Message::kSetTrajInertia, Message::kSetPositionGain,
           Message::kSetVelocityGains})
-      use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
-    for (const auto message : v06 ? std::array{Message::kEnterDfu, Message::kRxSdo}
-                                  : std::array{Message::kStartAnticogging, Message::kSetNodeId})
-      use.steers.push_back({.id = odrive::canId(node, message), .mask = kStandardIdMask});
-    if (v06) use.steers.back().discriminator = PayloadDiscriminator{.value = odrive::kSdoWrite};
+      steered_by(message);
+    if (v06) {
+      steered_by(Message::kEnterDfu);
+      use.steers.push_back({.id = odrive::canId(node, Message::kRxSdo),
+                            .mask = kStandardIdMask,
+                            .discriminators = {PayloadDiscriminator{.value = odrive::kSdoWrite}}});
+    } else {
+      for (const auto message : {Message::kStartAnticogging, Message::kSetNodeId}) steered_by(message);
+    }
 
     const double feedback_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 100.0;
     use.feedback = {{odrive::canId(node, odrive::Message::kEncoderEstimates), FrameShape{}, feedback_hz},

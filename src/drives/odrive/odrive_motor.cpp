@@ -63,7 +63,7 @@ ODrive_Motor::ODrive_Motor(const MotorSettings& settings, const MotorTraits& tra
   const bool v05 = firmware_ == OdriveFirmware::k05;
   const std::array heard{kHeartbeat, kEncoderEstimates, kBusVoltage, v05 ? kIq : kTorques, kTemperature};
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    filters_[i] = {.id = odrive::canId(node_, heard[i]), .mask = kStandardIdMask, .discriminator = {}};
+    filters_[i] = {.id = odrive::canId(node_, heard[i]), .mask = kStandardIdMask};
   }
   const std::array said{kSetAxisState,   kSetControllerMode, kSetInputPos, kSetInputVel,
                         kSetInputTorque, kSetLimits,         kClearErrors};

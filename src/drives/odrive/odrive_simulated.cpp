@@ -50,10 +50,9 @@ CanFrame pair(int node, odrive::Message message, double first, double second) no
 }  // namespace
 
 OdriveDrive::OdriveDrive(const MotorSettings& settings, const MotorTraits& traits, const MotorLoad& load)
-    : ServoDrive(settings, withSpeed(traits), load,
-                 {FrameFilter{.id = odrive::canId(settings.id, odrive::Message{}),
-                              .mask = odrive::kNodeMask,
-                              .discriminator = {}}}),
+    : ServoDrive(
+          settings, withSpeed(traits), load,
+          {FrameFilter{.id = odrive::canId(settings.id, odrive::Message{}), .mask = odrive::kNodeMask}}),
       node_(settings.id),
       firmware_(findOdriveModel(settings.model) != nullptr ? findOdriveModel(settings.model)->firmware
                                                            : OdriveFirmware::k06),

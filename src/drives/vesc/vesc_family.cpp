@@ -186,7 +186,7 @@ class VescFamily final : public MotorFamily {
     };
     const FrameFilter answers{
         .id = vesc::canId(vesc::Packet::kProcessShortBuffer, own.host_id),
-        .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}};
+        .discriminators = {PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}}};
     BusUse use;
     use.sends = {exactly(vesc::Packet::kStatus1),    exactly(vesc::Packet::kStatus2),
                  exactly(vesc::Packet::kStatus3),    exactly(vesc::Packet::kStatus4),
@@ -221,7 +221,7 @@ class VescFamily final : public MotorFamily {
       // A tool at another drive's USB passes its commands on: sender, a flag, then the command.
       for (const auto command : vesc::kPassedCommands)
         use.steers.push_back({.id = vesc::canId(Packet::kProcessShortBuffer, id),
-                              .discriminator = PayloadDiscriminator{.byte_index = 2, .value = command}});
+                              .discriminators = {PayloadDiscriminator{.byte_index = 2, .value = command}}});
     }
 
     const double rate_hz = settings.feedback_hz > 0 ? settings.feedback_hz : 50.0;

@@ -31,8 +31,8 @@ std::array<FrameFilter, 8> filtersOf(int id, const VescSettings& own) {
           exactly(vesc::Packet::kNotifyBoot),
           // Every drive answers to the one host id, with its own in the first byte.
           FrameFilter{.id = vesc::canId(vesc::Packet::kProcessShortBuffer, own.host_id),
-                      .discriminator = PayloadDiscriminator{
-                          .byte_index = 0, .mask = 0xFF, .value = static_cast<std::uint8_t>(id)}}};
+                      .discriminators = {PayloadDiscriminator{
+                          .byte_index = 0, .mask = 0xFF, .value = static_cast<std::uint8_t>(id)}}}};
 }
 
 std::array<CanId, 10> commandIdsOf(int id) {

@@ -32,8 +32,9 @@ std::vector<FrameFilter> vescSends(const MotorSettings& settings) {
     sends.push_back({.id = vesc::canId(packet, settings.id)});
   }
   // Its answers go to whoever asked: here that is the host.
-  sends.push_back({.id = vesc::canId(vesc::Packet::kProcessShortBuffer, vescSettings(settings.own).host_id),
-                   .discriminator = PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}});
+  sends.push_back(
+      {.id = vesc::canId(vesc::Packet::kProcessShortBuffer, vescSettings(settings.own).host_id),
+       .discriminators = {PayloadDiscriminator{.value = static_cast<std::uint8_t>(settings.id)}}});
   return sends;
 }
 
