@@ -263,7 +263,7 @@ void Daemon::describeRobot() {
       auto use = motor.family->busUse(motor.settings);
       described.family = motor.family;
       described.sends = std::move(use.sends);
-      described.steers = std::move(use.steers.empty() ? use.obeys : use.steers);
+      described.steers = use.steering();
       if (simulated)
         described.simulated = {.port = port,
                                .drive = drive,

@@ -22,7 +22,7 @@ void Chaos::describe() {
       described.id = motor.settings.id;
       described.family = motor.family;
       described.sends = std::move(use.sends);
-      described.steers = std::move(use.steers.empty() ? use.obeys : use.steers);
+      described.steers = use.steering();
       description_.motors.push_back(std::move(described));
     }
   }

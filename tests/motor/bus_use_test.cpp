@@ -56,7 +56,9 @@ std::vector<MotorSettings> variants(const MotorFamily& family, std::string_view 
     for (const auto choice : key.choices) with(std::string{choice});
     if (key.kind == OwnKey::Kind::kFlag) with(1.0);
   }
-  std::erase_if(all, [&family](const MotorSettings& settings) { return !family.check(settings); });
+  std::erase_if(all, [&](const MotorSettings& settings) {
+    return !family.check(settings) || id > family.traits(model, settings.own).max_id;
+  });
   return all;
 }
 

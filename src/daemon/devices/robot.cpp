@@ -138,7 +138,8 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
        .divided = config.settings.command_divider > 1,
        .optional = config.optional,
        .id = config.settings.id,
-       .steers = std::move(use.steers.empty() ? use.obeys : use.steers)});
+       .steers = use.steering(),
+       .obeys = std::move(use.obeys)});
   return {};
 }
 

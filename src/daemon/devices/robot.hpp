@@ -48,6 +48,7 @@ class Robot {
     bool homed = false;                 ///< A module finds its angle.
     int id = 0;                         ///< As set on the drive.
     std::vector<FrameFilter> steers{};  ///< Frames that command its drive, whoever sends them.
+    std::vector<FrameFilter> obeys{};   ///< All that it takes, in fewer filters: those lie within.
   };
   struct BusEntry {
     std::unique_ptr<fdCANbus> bus;

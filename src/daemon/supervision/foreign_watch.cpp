@@ -12,10 +12,14 @@ ForeignWatch::ForeignWatch(Robot& robot) : robot_(robot), watched_(robot.motors(
 }
 
 void ForeignWatch::onForeign(const fdCANbus& bus, const CanFrame& frame) noexcept {
+  // The few ids first: most frames of strangers are for nobody here, and a VESC has 64 that steer it.
+  const auto steered = [&frame](const Robot::MotorEntry& entry) {
+    return acceptsAny(entry.obeys, frame) && acceptsAny(entry.steers, frame);
+  };
   for (std::size_t motor = 0; motor < watched_.size(); ++motor) {
     const auto& entry = robot_.motors()[motor];
     const auto& on = robot_.buses()[entry.bus];
-    if (on.bus.get() != &bus || on.foreign.frames == 0 || !acceptsAny(entry.steers, frame)) continue;
+    if (on.bus.get() != &bus || on.foreign.frames == 0 || !steered(entry)) continue;
     if (bus.isRest(frame)) return;
     count(motor, on.foreign, frame);
   }
