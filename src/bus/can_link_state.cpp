@@ -118,11 +118,7 @@ void readController(Bytes can, CanLink& link) {
 
 tl::unexpected<Error> canLinkFailure(const std::string& interface, const std::string& what, int error,
                                      const std::string& fix) {
-  std::string remedy = fix;
-  if (error == ENODEV) {
-    remedy =
-        similarInterface(interface) + "; `ip link` lists what there is. A HAT needs its device tree overlay";
-  }
+  const auto remedy = error == ENODEV ? adviceForMissing(interface) : fix;
   return fail("CAN interface '" + interface + "': cannot " + what + ": " + errnoText(error) + remedy);
 }
 

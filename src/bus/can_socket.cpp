@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/errno_text.hpp"
+#include "bus/can_link_state.hpp"
 #include "bus/interface_names.hpp"
 
 namespace rc10 {
@@ -63,13 +64,13 @@ Result<Interface> findInterface(int fd, const std::string& name) {
   Interface found;
   if (::ioctl(fd, SIOCGIFINDEX, &request) != 0) {
     const std::string reason = errnoText(errno);
-    return fail("CAN interface '" + name + "': " + reason + similarInterface(name) +
-                "; `ip link` lists what there is. A HAT needs its device tree overlay; a virtual interface " +
-                "is made with `ip link add dev " + name + " type vcan && ip link set up " + name + "`");
+    return fail("CAN interface '" + name + "': " + reason + adviceForMissing(name) +
+                "; a virtual interface is made with `ip link add dev " + name +
+                " type vcan && ip link set up " + name + "`");
   }
   found.index = request.ifr_ifindex;
   if (::ioctl(fd, SIOCGIFMTU, &request) != 0) {
-    return fail("CAN interface '" + name + "': cannot read its MTU: " + errnoText(errno));
+    return canLinkFailure(name, "read its MTU", errno);
   }
   found.mtu = request.ifr_mtu;
   return found;
@@ -87,7 +88,7 @@ Result<void> bindTo(int fd, const std::string& name, const Interface& interface)
   address.can_ifindex = interface.index;
   if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return {};
   if (errno == ENODEV) return fail("'" + name + "' is not a CAN interface");
-  return fail("CAN interface '" + name + "': cannot bind: " + errnoText(errno));
+  return canLinkFailure(name, "bind", errno);
 }
 
 enum class Reading : std::uint8_t { kFrames, kEchoes };
@@ -98,7 +99,7 @@ Result<void> setReceiveOptions(int fd, const std::string& name, bool fd_frames, 
   const bool stamped = reading == Reading::kEchoes || (setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on) &&
                                                        setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, on));
   if (!stamped || (fd_frames && !setOption(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on))) {
-    return fail("CAN interface '" + name + "': cannot set a socket option: " + errnoText(errno));
+    return canLinkFailure(name, "set a socket option", errno);
   }
   // FORCE passes net.core.rmem_max but needs CAP_NET_ADMIN. A smaller buffer than asked is no error: what
   // it loses is counted.
@@ -124,7 +125,7 @@ Result<int> setSendBuffer(int fd, const std::string& name, int frames_per_tick) 
   socklen_t size = sizeof(effective);
   if (!setOption(fd, SOL_SOCKET, SO_SNDBUF, sendBufferRequest(frames_per_tick)) ||
       ::getsockopt(fd, SOL_SOCKET, SO_SNDBUF, &effective, &size) != 0) {
-    return fail("CAN interface '" + name + "': cannot set the send buffer: " + errnoText(errno));
+    return canLinkFailure(name, "set the send buffer", errno);
   }
   return effective;
 }
@@ -145,11 +146,11 @@ Result<CanSocket> openCanSocket(const std::string& interface, const CanSocketOpt
   if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames, Reading::kFrames); !ok)
     return tl::unexpected(ok.error());
   if (options.send_only && ::setsockopt(fd->get(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) != 0) {
-    return fail("CAN interface '" + interface + "': cannot set the filter: " + errnoText(errno));
+    return canLinkFailure(interface, "set the filter", errno);
   }
   const can_err_mask_t errors = options.send_only ? 0U : kErrorClasses;
   if (!setOption(fd->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors)) {
-    return fail("CAN interface '" + interface + "': cannot ask for error messages: " + errnoText(errno));
+    return canLinkFailure(interface, "ask for error messages", errno);
   }
   const auto send_buffer_bytes = setSendBuffer(fd->get(), interface, options.frames_per_tick);
   if (!send_buffer_bytes) return tl::unexpected(send_buffer_bytes.error());
@@ -186,7 +187,7 @@ Result<UniqueFd> openEchoSocket(const std::string& interface, std::span<const Ca
   if (auto ok = setReceiveOptions(fd->get(), interface, fd_frames, Reading::kEchoes); !ok)
     return tl::unexpected(ok.error());
   if (!hearOnly(fd->get(), command_ids)) {
-    return fail("CAN interface '" + interface + "': cannot set the echo filter: " + errnoText(errno));
+    return canLinkFailure(interface, "set the echo filter", errno);
   }
   if (auto ok = bindTo(fd->get(), interface, *found); !ok) return tl::unexpected(ok.error());
   return fd;

@@ -15,15 +15,17 @@ static_assert(SendBatch::kCapacity == fdCANbus::kMaxFramesPerTick);
 
 namespace {
 
+bool sayTheSame(const CanFrame& a, const CanFrame& b) noexcept {
+  const auto bytes = a.payload();
+  return a.id == b.id && std::equal(bytes.begin(), bytes.end(), b.payload().begin(), b.payload().end());
+}
+
 /// A repetition of a frame of the last tick: a wire or a bridge that doubles frames is no other controller,
 /// and commands nothing new.
 bool isDoubled(const CanFrame& frame, const SendBatch& batch) noexcept {
   const auto sent = batch.cleared();
-  return std::any_of(sent.begin(), sent.end(), [&frame](const SendBatch::Entry& entry) {
-    const auto bytes = entry.frame.payload();
-    return entry.frame.id == frame.id &&
-           std::equal(bytes.begin(), bytes.end(), frame.payload().begin(), frame.payload().end());
-  });
+  return std::any_of(sent.begin(), sent.end(),
+                     [&frame](const SendBatch::Entry& entry) { return sayTheSame(entry.frame, frame); });
 }
 
 }  // namespace
@@ -113,14 +115,10 @@ bool fdCANbus::stops(const CanFrame& frame) noexcept {
 
 bool fdCANbus::isRest(const CanFrame& frame) const noexcept {
   std::array<CanFrame, kMaxFramesPerPacker> frames{};
-  const auto same = [&frame](const CanFrame& rest) {
-    const auto bytes = rest.payload();
-    return rest.id == frame.id &&
-           std::equal(bytes.begin(), bytes.end(), frame.payload().begin(), frame.payload().end());
-  };
   return std::any_of(packers_.begin(), packers_.end(), [&](const CommandPacker* packer) {
     const auto rest = std::span{frames}.first(packer->packRest(frames));
-    return std::any_of(rest.begin(), rest.end(), same);
+    return std::any_of(rest.begin(), rest.end(),
+                       [&frame](const CanFrame& one) { return sayTheSame(one, frame); });
   });
 }
 

@@ -18,4 +18,8 @@ std::string similarInterface(std::string_view name) {
   return didYouMean(name, names);
 }
 
+std::string adviceForMissing(std::string_view name) {
+  return similarInterface(name) + "; `ip link` lists what there is. A HAT needs its device tree overlay";
+}
+
 }  // namespace rc10

@@ -9,4 +9,7 @@ namespace rc10 {
 /// is near. Start-up only.
 [[nodiscard]] std::string similarInterface(std::string_view name);
 
+/// The same, and where to look for what there is: "; did you mean can0?; `ip link` lists …".
+[[nodiscard]] std::string adviceForMissing(std::string_view name);
+
 }  // namespace rc10

@@ -51,9 +51,8 @@ std::string adviceForOpen(int error) {
     case ENXIO: return "; " + presentNames();
     case EACCES:
     case EPERM:
-      return "; add the user to the group of the device, usually `sudo usermod -aG dialout $USER`, and log "
-             "in "
-             "again (the service has that group already; a container needs the device passed in)";
+      return "; add the user to the group of the device, usually `sudo usermod -aG dialout $USER`, and "
+             "log in again (the service has that group already; a container needs the device passed in)";
     case EBUSY: return "; another program has it for itself: `fuser` with this path shows which";
     default: return "";
   }

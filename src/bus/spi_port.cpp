@@ -20,13 +20,11 @@ std::string adviceFor(int error) {
     case ENODEV:
     case ENXIO:
       return "; switch the SPI bus on (Raspberry Pi: `dtparam=spi=on` in config.txt; Jetson: jetson-io.py), "
-             "then "
-             "`ls /dev/spidev*` shows it";
+             "then `ls /dev/spidev*` shows it";
     case EACCES:
     case EPERM:
       return "; this user may not use it: join the group that owns /dev/spidev* (`spi` on Raspberry Pi OS), "
-             "and "
-             "let the unit have it: the drop-in spi.conf, docs/installing.md";
+             "and let the unit have it: the drop-in spi.conf, docs/installing.md";
     case ENOTTY: return "; it is no SPI device; name one that `ls /dev/spidev*` shows";
     default: return "";
   }

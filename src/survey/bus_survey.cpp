@@ -6,6 +6,19 @@
 #include "survey/harmless_queries.hpp"
 
 namespace rc10::survey {
+namespace {
+
+void dropTooFrequent(Sighting& sighting, Duration listened) {
+  if (listened <= Duration{0}) return;
+  const bool others = std::any_of(sighting.guesses.begin(), sighting.guesses.end(),
+                                  [](const DriveGuess& guess) { return guess.most_hz == 0.0F; });
+  if (!others) return;
+  std::erase_if(sighting.guesses, [&](const DriveGuess& guess) {
+    return guess.most_hz > 0.0F && static_cast<float>(sighting.frames) > guess.most_hz * seconds(listened);
+  });
+}
+
+}  // namespace
 
 bool Sighting::ambiguous() const {
   return std::any_of(guesses.begin(), guesses.end(), [this](const DriveGuess& g) {
@@ -28,20 +41,6 @@ void BusSurvey::take(const CanFrame& frame) {
       ++known->second;
   }
 }
-
-namespace {
-
-void dropTooFrequent(Sighting& sighting, Duration listened) {
-  if (listened <= Duration{0}) return;
-  const bool others = std::any_of(sighting.guesses.begin(), sighting.guesses.end(),
-                                  [](const DriveGuess& guess) { return guess.most_hz == 0.0F; });
-  if (!others) return;
-  std::erase_if(sighting.guesses, [&](const DriveGuess& guess) {
-    return guess.most_hz > 0.0F && static_cast<float>(sighting.frames) > guess.most_hz * seconds(listened);
-  });
-}
-
-}  // namespace
 
 std::vector<Sighting> BusSurvey::sightings(Duration listened) const {
   std::vector<Sighting> sightings;
@@ -77,8 +76,8 @@ std::string BusSurvey::commandedBy(const CanFrame& query) const {
 std::string BusSurvey::commandedByAnswerTo(const CanFrame& query) const {
   for (const auto& [key, heard] : heard_) {
     const auto& [extended, id] = key;
+    if (!isAnsweredTo(query.id, {id, extended})) continue;
     const auto drive = id & 0xFFU;
-    if (!extended || id > 0xFFFFU || !isAnsweredTo(query.id, drive)) continue;
     for (const auto& [guess, count] : heard.guesses) {
       if (guess.from_drive && static_cast<std::uint32_t>(guess.id) == drive)
         return std::string{guess.kind} + " " + std::to_string(drive) + ", by an answer";

@@ -99,10 +99,8 @@ std::string DriveClaims::commandedBy(const CanFrame& question) const {
   });
   if (found != motors_.end()) return "motor '" + found->name + "'";
   const auto answered = std::find_if(motors_.begin(), motors_.end(), [&](const KnownMotor& motor) {
-    return std::any_of(motor.steers.begin(), motor.steers.end(), [&](const FrameFilter& filter) {
-      return filter.id.extended && filter.id.value <= 0xFFFFU &&
-             isAnsweredTo(question.id, filter.id.value & 0xFFU);
-    });
+    return std::any_of(motor.steers.begin(), motor.steers.end(),
+                       [&](const FrameFilter& filter) { return isAnsweredTo(question.id, filter.id); });
   });
   return answered == motors_.end() ? std::string{} : "motor '" + answered->name + "', by an answer";
 }

@@ -19,7 +19,7 @@ struct KnownMotor {
   const MotorFamily* family = nullptr;
   int id = 0;
   std::vector<FrameFilter> sends{};   ///< BusUse::sends
-  std::vector<FrameFilter> steers{};  ///< BusUse::steers
+  std::vector<FrameFilter> steers{};  ///< BusUse::steering()
 };
 
 /// Motors to which the drives that are heard belong. Not for real-time threads: it allocates.

@@ -16,12 +16,14 @@ std::vector<CanFrame> harmlessQueries() {
   return queries;
 }
 
-bool isAnsweredTo(CanId question, std::uint32_t drive) {
-  const auto& families = builtInFamilies();
+bool isAnsweredTo(CanId question, CanId drives) {
+  const auto is_packet = [](CanId id) { return id.extended && id.value <= 0xFFFFU; };
+  if (!is_packet(drives)) return false;
+  const auto families = builtInFamilies();
   return std::any_of(families.begin(), families.end(), [&](const FamilyEntry& entry) {
     if (entry.questions == nullptr || entry.questions->answer == nullptr) return false;
     const auto answer = entry.questions->answer(question);
-    return answer && answer->extended && answer->value <= 0xFFFFU && (answer->value & 0xFFU) == drive;
+    return answer && is_packet(*answer) && ((answer->value ^ drives.value) & 0xFFU) == 0;
   });
 }
 

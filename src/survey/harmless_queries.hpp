@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "bus/can_frame.hpp"
@@ -23,8 +22,8 @@ namespace rc10::survey {
 /// CubeMars drive whose id is 254: BusSurvey and DriveClaims name it, and no RobStride is asked beside it.
 [[nodiscard]] std::vector<CanFrame> harmlessQueries();
 
-/// Whether some drive's answer to this question has an id of 16 bits that ends in `drive`: a command of a
-/// VESC or CubeMars drive of that id, whatever the packet before it is.
-[[nodiscard]] bool isAnsweredTo(CanId question, std::uint32_t drive);
+/// Whether some drive's answer to this question is a command to the VESC or CubeMars drive that has frames of
+/// this id: both are extended ids of 16 bits that end in the same byte, whatever the packet before it is.
+[[nodiscard]] bool isAnsweredTo(CanId question, CanId drives);
 
 }  // namespace rc10::survey

@@ -10,11 +10,11 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "app/errno_text.hpp"
 #include "app/sanitizers.hpp"
 
 namespace rc10::web {
@@ -93,13 +93,12 @@ BoundedChild::~BoundedChild() { end(); }
 
 Result<BoundedChild> BoundedChild::start(const Work& work, MonotonicTime now, const ChildLimits& limits) {
   std::array<int, 2> ends{-1, -1};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail(std::string{"no pipe: "} + std::strerror(errno));
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail("no pipe: " + errnoText(errno));
   UniqueFd answers{ends[0]};
   const UniqueFd told{ends[1]};
-  if (::fcntl(answers.get(), F_SETFL, O_NONBLOCK) != 0)
-    return fail(std::string{"no pipe: "} + std::strerror(errno));
+  if (::fcntl(answers.get(), F_SETFL, O_NONBLOCK) != 0) return fail("no pipe: " + errnoText(errno));
   const pid_t pid = ::fork();
-  if (pid < 0) return fail(std::string{"no process: "} + std::strerror(errno));
+  if (pid < 0) return fail("no process: " + errnoText(errno));
   if (pid == 0) {
     shutIn(told.get(), limits);
     answerAndEnd(work, told.get());

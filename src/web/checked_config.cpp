@@ -65,6 +65,12 @@ std::string checkedConfigJson(std::string_view text) {
                          {"robot", outcome.config ? checkedRobotJson(*outcome.config) : Json(nullptr)}});
 }
 
+std::string withToken(std::string_view token, std::string_view text) {
+  std::string both;
+  if (token.find('\n') == std::string_view::npos) both = token;
+  return both.append("\n").append(text);
+}
+
 std::string mayReplaceJson(std::string_view token_and_text) {
   const auto [token, text] = tokenAndText(token_and_text);
   return mayReplace(text, token) ? "true" : "false";

@@ -11,10 +11,14 @@ namespace rc10::web {
 /// web/src/protocol.ts, CheckedConfig.
 [[nodiscard]] std::string checkedConfigJson(std::string_view text);
 
-/// mayReplace(), "true" or "false", of the same input as that of shownConfigJson().
+/// Input of the next two: the token in the first line, and the text behind it. A token with a line's end is
+/// none.
+[[nodiscard]] std::string withToken(std::string_view token, std::string_view text);
+
+/// mayReplace(), "true" or "false".
 [[nodiscard]] std::string mayReplaceJson(std::string_view token_and_text);
 
-/// ShownConfig. The first line of the input is the token, all others are the text.
+/// ShownConfig.
 [[nodiscard]] std::string shownConfigJson(std::string_view token_and_text);
 
 }  // namespace rc10::web

@@ -2,19 +2,12 @@
 
 #include <algorithm>
 
-#include "web/frame_writer.hpp"
-
 namespace rc10::web {
-namespace {
-
-constexpr std::size_t kHeaderSize = 32;
-
-}  // namespace
 
 std::vector<std::byte> columnsFrame(const TraceStore& store, const View& view, FrameKind kind,
                                     std::uint32_t view_number, std::int64_t first, std::size_t count) {
   count = std::min(count, kMaxColumns);
-  FrameWriter out{kHeaderSize + view.signals.size() * count * 2 * sizeof(float)};
+  FrameWriter out{kFrameHeaderBytes + view.signals.size() * count * 2 * sizeof(float)};
   out.add(kFrameVersion);
   out.add(kind);
   out.add(static_cast<std::uint16_t>(view.signals.size()));

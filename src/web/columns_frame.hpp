@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "link/trace_signal.hpp"
+#include "web/frame_writer.hpp"
 #include "web/trace_store.hpp"
 
 namespace rc10::web {
@@ -16,15 +17,6 @@ struct View {
   std::int64_t column_us = 0;  ///< 0: it draws nothing.
 };
 
-enum class FrameKind : std::uint8_t {
-  kNext = 1,       ///< The columns after those of the frame before.
-  kReset = 2,      ///< The first of a view: what was drawn before is void.
-  kRange = 3,      ///< An answer to a question about the past.
-  kRecording = 4,  ///< No columns: see pieceFrame().
-  kCurve = 5,      ///< Ticks of a test of motion: see curveFrame().
-};
-
-inline constexpr std::uint8_t kFrameVersion = 1;
 /// A screen has no more.
 inline constexpr std::size_t kMaxColumns = 4096;
 

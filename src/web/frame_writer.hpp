@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -9,6 +10,18 @@
 namespace rc10::web {
 
 static_assert(std::endian::native == std::endian::little, "a frame is written as memory is");
+
+// All binary frames to a page begin with a header: this version u8, the kind u8, and what the kind has.
+inline constexpr std::uint8_t kFrameVersion = 1;
+inline constexpr std::size_t kFrameHeaderBytes = 32;
+
+enum class FrameKind : std::uint8_t {
+  kNext = 1,       ///< The columns after those of the frame before: columnsFrame().
+  kReset = 2,      ///< The first of a view: what was drawn before is void.
+  kRange = 3,      ///< An answer to a question about the past.
+  kRecording = 4,  ///< Bytes of a recording: pieceFrame().
+  kCurve = 5,      ///< Ticks of a test of motion: curveFrame().
+};
 
 /// Bytes of a binary frame to a page, number by number.
 class FrameWriter {

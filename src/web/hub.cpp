@@ -184,13 +184,12 @@ void Hub::showConfigTo(const Page& page, const AskConfig& wanted) {
   if (found.text.empty())
     return page.socket->sendText(shared(responseMessage(
         wanted.seq, "failed", "rc10d left no copy of its file in the run folder: open the file instead")));
-  auto token = page.loopback ? page.link->token() : std::string{};
-  if (token.find('\n') != std::string::npos) token.clear();
+  const auto token = page.loopback ? page.link->token() : std::string{};
   askDesk(page, {.page = page.number,
                  .seq = wanted.seq,
                  .head = configHead(wanted.seq, found.of, sha256(found.text)),
                  .work = shownConfigJson,
-                 .input = token + "\n" + found.text});
+                 .input = withToken(token, found.text)});
 }
 
 void Hub::check(const Page& page, CheckConfig wanted) {
@@ -215,13 +214,11 @@ void Hub::change(Page& page, const ChangeFile& wanted, Duration age) {
   if (!refused.empty() || !accepted)
     return page.socket->sendText(shared(responseMessage(wanted.seq, "refused", refused)));
   page.changes_file = true;
-  auto token = page.link->token();
-  if (token.find('\n') != std::string::npos) token.clear();
   askDesk(page, {.page = page.number,
                  .seq = wanted.seq,
                  .head = {},
                  .work = mayReplaceJson,
-                 .input = token + "\n" + accepted->text,
+                 .input = withToken(page.link->token(), accepted->text),
                  .then = client::FileRequest{
                      .verb = wanted.verb,
                      .robot = accepted->robot,

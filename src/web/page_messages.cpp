@@ -12,7 +12,6 @@
 #include "link/event_text.hpp"
 #include "rc10_version.hpp"
 #include "survey/frame_words.hpp"
-#include "web/columns_frame.hpp"
 #include "web/frame_writer.hpp"
 
 namespace rc10::web {
@@ -164,7 +163,7 @@ std::vector<std::byte> curveFrame(const client::Curve& curve, std::int64_t seq, 
                                 &CurveSample::current_a,       &CurveSample::feedback_age_us};
   const std::size_t begin = std::min(first, curve.size());
   const auto ticks = std::span{curve}.subspan(begin, std::min(kMaxCurveTicks, curve.size() - begin));
-  FrameWriter out{32 + (kColumns.size() + 1) * ticks.size() * sizeof(double)};
+  FrameWriter out{kFrameHeaderBytes + (kColumns.size() + 1) * ticks.size() * sizeof(double)};
   out.add(kFrameVersion);
   out.add(FrameKind::kCurve);
   out.add(static_cast<std::uint16_t>(kColumns.size() + 1));

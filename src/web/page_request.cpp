@@ -47,6 +47,19 @@ Result<std::int64_t> wholeOf(const Received& object, const char* key, double lea
   return static_cast<std::int64_t>(value);
 }
 
+/// Number of a message, and when it was sent, by the page's clock.
+struct NumberAndTime {
+  std::int64_t seq = 0;
+  Duration sent{};
+};
+Result<NumberAndTime> numberAndTimeOf(const Received& object) {
+  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
+  if (!seq) return tl::unexpected(seq.error());
+  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
+  if (!sent_us) return tl::unexpected(sent_us.error());
+  return NumberAndTime{*seq, std::chrono::microseconds{*sent_us}};
+}
+
 Result<PageRequest> viewOf(const Received& object) {
   ChooseView view;
   const auto number = wholeOf(object, "view", 0, std::numeric_limits<std::uint32_t>::max());
@@ -117,13 +130,10 @@ Result<PageRequest> clockOf(const Received& object) {
 
 Result<PageRequest> driveOf(const Received& object) {
   DriveMotor drive;
-  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
-  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
-  for (const auto* each : {&seq, &sent_us}) {
-    if (!*each) return tl::unexpected(each->error());
-  }
-  drive.seq = *seq;
-  drive.sent = std::chrono::microseconds{*sent_us};
+  const auto stamp = numberAndTimeOf(object);
+  if (!stamp) return tl::unexpected(stamp.error());
+  drive.seq = stamp->seq;
+  drive.sent = stamp->sent;
   drive.motor = textOf(object, "motor");
   if (drive.motor.empty() || drive.motor.size() >= sizeof(link::Name))
     return fail("'motor' is missing or too long");
@@ -238,13 +248,9 @@ Result<PageRequest> configCheckOf(const Received& object) {
 }
 
 Result<PageRequest> changeOf(const Received& object, client::FileVerb verb) {
-  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
-  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
-  for (const auto* each : {&seq, &sent_us}) {
-    if (!*each) return tl::unexpected(each->error());
-  }
-  ChangeFile change{
-      .seq = *seq, .sent = std::chrono::microseconds{*sent_us}, .verb = verb, .text = {}, .replaces = {}};
+  const auto stamp = numberAndTimeOf(object);
+  if (!stamp) return tl::unexpected(stamp.error());
+  ChangeFile change{.seq = stamp->seq, .sent = stamp->sent, .verb = verb, .text = {}, .replaces = {}};
   if (verb == client::FileVerb::kRestart) return change;
   const auto* text = memberOf(object, "text");
   if (text == nullptr || !text->is_string()) return fail("'text' is missing");
@@ -358,25 +364,19 @@ Result<PageRequest> testOf(const Received& object) {
     if (std::find(kTestKeys.begin(), kTestKeys.end(), key) == kTestKeys.end())
       return fail("a test has no '" + printable(key.substr(0, kMostKey)) + "'");
   }
-  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
-  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
-  for (const auto* each : {&seq, &sent_us}) {
-    if (!*each) return tl::unexpected(each->error());
-  }
+  const auto stamp = numberAndTimeOf(object);
+  if (!stamp) return tl::unexpected(stamp.error());
   Members members(object);
-  StartTest test{.seq = *seq, .sent = std::chrono::microseconds{*sent_us}, .plan = planOf(object, members)};
+  StartTest test{.seq = stamp->seq, .sent = stamp->sent, .plan = planOf(object, members)};
   test.priority = static_cast<std::int32_t>(members.whole("priority", -kMostPriority, kMostPriority, 0));
   if (!members.mistake().empty()) return fail(members.mistake());
   return test;
 }
 
 Result<PageRequest> renewalOf(const Received& object) {
-  const auto seq = wholeOf(object, "seq", 0, kMaxExact);
-  const auto sent_us = wholeOf(object, "sent_us", 0, kMaxExact);
-  for (const auto* each : {&seq, &sent_us}) {
-    if (!*each) return tl::unexpected(each->error());
-  }
-  return RenewTest{*seq, std::chrono::microseconds{*sent_us}};
+  const auto stamp = numberAndTimeOf(object);
+  if (!stamp) return tl::unexpected(stamp.error());
+  return RenewTest{stamp->seq, stamp->sent};
 }
 
 Result<PageRequest> endOf(const Received& object) {

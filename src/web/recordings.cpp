@@ -13,8 +13,9 @@
 #include <tuple>
 #include <utility>
 
+#include "app/errno_text.hpp"
 #include "blackbox/copies.hpp"
-#include "web/columns_frame.hpp"
+#include "web/frame_writer.hpp"
 
 namespace rc10::web {
 namespace {
@@ -26,7 +27,6 @@ constexpr std::array<std::string_view, 2> kEndings{".blackbox", ".blackbox.crash
 // Half of what a page may be behind before it gets fewer pictures.
 constexpr std::size_t kPieceBytes = std::size_t{128} << 10U;
 static_assert(kPieceBytes >= blackbox::ImageReader::kLeastPiece);
-constexpr std::size_t kPieceHeader = 32;
 
 bool isRecording(std::string_view name) {
   return std::any_of(kEndings.begin(), kEndings.end(), [&](auto ending) { return name.ends_with(ending); });
@@ -72,18 +72,18 @@ Result<OpenRecording> Recordings::open(std::string_view name) const {
   if (file == files.end()) return fail("there is no such recording any more: newer ones took its place");
   const auto path = (file->live ? run_dir_ : state_dir_) + "/" + file->name;
   UniqueFd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)};
-  if (!fd) return fail(path + ": " + std::strerror(errno));
+  if (!fd) return fail(path + ": " + errnoText(errno));
   auto reader = blackbox::ImageReader::open(fd.get());
   if (!reader) return fail(path + ": " + reader.error().message);
   return OpenRecording{std::move(fd), *reader};
 }
 
 Result<std::vector<std::byte>> pieceFrame(blackbox::ImageReader& reader, std::uint32_t number, bool& last) {
-  std::vector<std::byte> frame(kPieceHeader + kPieceBytes);
-  const auto piece = reader.next(std::span{frame}.subspan(kPieceHeader));
+  std::vector<std::byte> frame(kFrameHeaderBytes + kPieceBytes);
+  const auto piece = reader.next(std::span{frame}.subspan(kFrameHeaderBytes));
   if (!piece) return tl::unexpected(piece.error());
   last = piece->offset == 0;
-  frame.resize(kPieceHeader + piece->bytes.size());
+  frame.resize(kFrameHeaderBytes + piece->bytes.size());
   const auto put = [&frame](std::size_t at, auto value) {
     std::memcpy(frame.data() + at, &value, sizeof value);
   };

@@ -9,19 +9,10 @@
 #include "web/left_files.hpp"
 
 namespace rc10::web {
-
-FoundConfig readRunningConfig(const std::string& run_dir, const std::string& robot, const std::string& hash) {
-  auto left =
-      robot.find('/') == std::string::npos ? readLeft(link::configPath(run_dir, robot)) : std::nullopt;
-  if (!left || sha256(left->text) != hash) return {};
-  return {"running", std::move(left->text)};
-}
-
 namespace {
 
 std::optional<LeftText> lastAccepted(const std::string& run_dir, const std::optional<std::string>& robot) {
-  const bool named = robot && !robot->empty() && robot->find('/') == std::string::npos;
-  return readLeft(named ? link::configPath(run_dir, *robot) : newestLeftFile(run_dir, ".config"));
+  return readLeft(namesFiles(robot) ? link::configPath(run_dir, *robot) : newestLeftFile(run_dir, ".config"));
 }
 
 std::optional<std::string> onlyRobotIn(const std::string& run_dir) {
@@ -38,11 +29,17 @@ std::optional<std::string> onlyRobotIn(const std::string& run_dir) {
 
 }  // namespace
 
+FoundConfig readRunningConfig(const std::string& run_dir, const std::string& robot, const std::string& hash) {
+  auto left = namesFiles(robot) ? readLeft(link::configPath(run_dir, robot)) : std::nullopt;
+  if (!left || sha256(left->text) != hash) return {};
+  return {"running", std::move(left->text)};
+}
+
 // The rights in one robot's file say nothing about another's.
 std::optional<AcceptedConfig> readAcceptedConfig(const std::string& run_dir,
                                                  const std::optional<std::string>& robot) {
   const auto of = robot && !robot->empty() ? robot : onlyRobotIn(run_dir);
-  if (!of || of->find('/') != std::string::npos) return std::nullopt;
+  if (!namesFiles(of)) return std::nullopt;
   auto left = readLeft(link::configPath(run_dir, *of));
   if (!left) return std::nullopt;
   return AcceptedConfig{.robot = *of, .text = std::move(left->text)};

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
+#include "app/errno_text.hpp"
 #include "app/unique_fd.hpp"
 #include "client/page_token.hpp"
 
@@ -22,7 +22,7 @@ Result<std::string> readOrMakeToken(const std::string& path) {
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR)};
   const auto line = *token + "\n";
   if (!made || ::write(made.get(), line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-    return fail("the token in " + path + " cannot be written: " + std::strerror(errno) +
+    return fail("the token in " + path + " cannot be written: " + errnoText(errno) +
                 ". Choose another file with --token-file");
   return token;
 }

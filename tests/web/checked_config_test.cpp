@@ -110,5 +110,10 @@ TEST(CheckedConfig, TheShownFileIsTheTextBehindTheFirstLine) {
   EXPECT_EQ(shown["hidden"], 0);
 }
 
+TEST(CheckedConfig, ATokenWithALinesEndIsNoneAndLeavesTheTextAsItIs) {
+  EXPECT_EQ(withToken("secret", "robot: hero\n"), "secret\nrobot: hero\n");
+  EXPECT_EQ(withToken("secret\nrobot: other", "robot: hero\n"), "\nrobot: hero\n");
+}
+
 }  // namespace
 }  // namespace rc10::web::test::checked_config_test
