@@ -39,17 +39,13 @@ constexpr double kAngleSlackDeg = 1.0;
 }
 
 [[nodiscard]] bool slows(const Told& told, double measured_rpm) {
-  return followsShaft(told, measured_rpm) && (told.stiff || told.sum * measured_rpm <= 0.0) &&
-         std::fabs(told.effort) <= told.effort_step;
+  return followsShaft(told, measured_rpm) && std::fabs(told.effort) <= told.effort_step;
 }
 
-[[nodiscard]] bool resistsAtMost(const Told& told, double measured_rpm) {
-  return told.resistsAtMost() || (!told.stiff && slows(told, measured_rpm));
-}
-
-// It stays where it is, as far as the drive can: without a speed or an effort of its own.
+// It stays where it is, as far as the drive can: without a speed or an effort of its own. A drive keeps its
+// last frame when a cable tears, so a speed that a damping is to yield to is one.
 [[nodiscard]] bool staysPut(const Told& told, double measured_rpm) {
-  if (resistsAtMost(told, measured_rpm)) return true;
+  if (told.resistsAtMost()) return true;
   const bool to_a_place = told.law == Told::Law::kAngle || (told.law == Told::Law::kSpring && told.stiff);
   const bool by_itself =
       std::fabs(told.velocity_rpm) <= told.velocity_step_rpm && std::fabs(told.effort) <= told.effort_step;
@@ -74,7 +70,7 @@ bool Oracle::mayLag(const Motor& motor, std::uint64_t ticks) {
 bool Oracle::damps(const Motor& motor) const {
   const double per_rpm = motor.wire->dampPerRpm();
   const double measured_rpm = motor.wire->measured().velocity_rpm;
-  if (std::isnan(per_rpm)) return resistsAtMost(motor.told, measured_rpm);
+  if (std::isnan(per_rpm)) return motor.told.resistsAtMost();
   const double bounded = std::clamp(-measured_rpm * per_rpm, -motor.limit, motor.limit);
   const double slack = 1.5 * motor.told.effort_step;
   if (std::fabs(motor.told.effort - bounded) <= slack) return true;
@@ -317,9 +313,11 @@ bool Oracle::fits(const Motor& motor, FallbackAction action) const {
   switch (action) {
     case FallbackAction::kCoast:
       if (told.rests()) return true;
-      return !motor.wire->idlesAtRest() && isOn(motor.status) && resistsAtMost(told, measured_rpm);
+      return !motor.wire->idlesAtRest() && isOn(motor.status) && told.resistsAtMost();
     case FallbackAction::kDamp: return damps(motor);
-    case FallbackAction::kBrake: return motor.host_brakes || staysPut(told, measured_rpm);
+    case FallbackAction::kBrake:
+      if (resists(FrameKind::kBrake, motor.config->traits().frames)) return told.resistsAtMost();
+      return motor.host_brakes || staysPut(told, measured_rpm);
     case FallbackAction::kHold: return motor.host_holds || staysPut(told, measured_rpm);
     case FallbackAction::kRamp: return ramps(motor);
   }

@@ -12,6 +12,7 @@
 #include "bus/fdcan_bus.hpp"
 #include "drives/families.hpp"
 #include "sim/solo_rig.hpp"
+#include "support/family_of.hpp"
 #include "support/own_defaults.hpp"
 
 namespace rc10::test::told_values_test {
@@ -48,19 +49,10 @@ const Subject kSubjects[] = {
     {"LkTech", "LK-MG5010E-i10", 3, {}},
 };
 
-const FamilyEntry& entryOf(const std::string& model) {
-  for (const auto& entry : builtInFamilies()) {
-    for (const auto known : entry.family->models()) {
-      if (known == model) return entry;
-    }
-  }
-  throw std::invalid_argument(model);
-}
-
 /// A motor that its family built, as the daemon does.
 class Built {
  public:
-  explicit Built(const Subject& subject) : entry_(entryOf(subject.model)) {
+  explicit Built(const Subject& subject) : entry_(familyOf(subject.model)) {
     settings_.name = "motor";
     settings_.model = subject.model;
     settings_.id = subject.id;

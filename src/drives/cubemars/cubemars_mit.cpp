@@ -288,6 +288,7 @@ void CubemarsMit::send(const SpringLaw& wanted_law) noexcept {
   const double most_rad_s = own().ranges.velocity_rad_s;
   command_.velocity_rad_s = std::clamp(command_.velocity_rad_s, -most_rad_s, most_rad_s);
   if (boundTorque(command_, measured(), driveTorqueLimitNm(), SpringYield::kGains)) limits_ |= kLimitCurrent;
+  keepResisting(command_, CubemarsRanges::kDampingStepNmsPerRad);
   setCommand(torqueToOutput(torqueNm(command_, measured())) / static_cast<double>(torqueNmPerA()),
              CommandUnit::kAmpere);
 }

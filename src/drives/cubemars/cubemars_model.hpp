@@ -23,6 +23,7 @@ struct CubemarsRanges {
   double torque_nm = 0.0;
   static constexpr double kStiffnessNmPerRad = 500.0;
   static constexpr double kDampingNmsPerRad = 5.0;
+  static constexpr double kDampingStepNmsPerRad = kDampingNmsPerRad / 4095.0;
 };
 
 /// Everything in which one AK model differs from another.

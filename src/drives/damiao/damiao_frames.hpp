@@ -23,6 +23,7 @@ inline constexpr std::uint32_t kAddressMask = 0x0FF;
 inline constexpr int kMaxId = 15;
 inline constexpr double kKpMax = 500.0;
 inline constexpr double kKdMax = 5.0;
+inline constexpr double kKdStep = kKdMax / 4095.0;
 /// One step of the register TIMEOUT.
 inline constexpr double kTimeoutStepMs = 0.05;
 

@@ -51,6 +51,7 @@ SpringLaw boundedMit(SpringLaw law, const DamiaoMitBounds& bounds, std::uint32_t
   // A shaft that is faster than its field can say has a greater error than that: the gains yield.
   law.velocity_rad_s = std::clamp(law.velocity_rad_s, -bounds.scale.v_max_rad_s, bounds.scale.v_max_rad_s);
   if (boundTorque(law, bounds.measured, most_nm, SpringYield::kGains)) limits |= kLimitCurrent;
+  keepResisting(law, damiao::kKdStep);
   // Without a gain its target means nothing; 0 is the plainest.
   if (law.stiffness_nm_per_rad == 0.0) law.position_rad = 0.0;
   if (law.damping_nms_per_rad == 0.0) law.velocity_rad_s = 0.0;

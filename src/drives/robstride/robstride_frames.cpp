@@ -56,6 +56,8 @@ CanFrame Codec::operate(const SpringLaw& wanted) const noexcept {
   return makeClassicFrame(canId(Type::kOperate, toRaw(wanted.torque_nm, -torque, torque), drive_id), data);
 }
 
+double Codec::dampingStep() const noexcept { return model->damping_range_nms_per_rad / kRawFullScale; }
+
 CanFrame Codec::enable() const noexcept {
   return makeClassicFrame(canId(Type::kEnable, static_cast<std::uint32_t>(host_id), drive_id),
                           std::array<std::uint8_t, 8>{});

@@ -79,6 +79,9 @@ struct Codec {
   [[nodiscard]] CanFrame write(std::uint16_t index, std::uint32_t bits) const noexcept;
   [[nodiscard]] CanFrame write(std::uint16_t index, float value) const noexcept;
 
+  /// One step of the field for the damping.
+  [[nodiscard]] double dampingStep() const noexcept;
+
   /// Feedback in a frame of 8 bytes.
   [[nodiscard]] Feedback feedback(const CanFrame& frame) const noexcept;
 

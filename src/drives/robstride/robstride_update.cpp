@@ -137,6 +137,7 @@ void RobStride_Motor::limitTorque(SpringLaw& wanted) noexcept {
   wanted.velocity_rad_s =
       std::clamp(wanted.velocity_rad_s, -model_->velocity_range_rad_s, model_->velocity_range_rad_s);
   if (boundTorque(wanted, measured(), limit, SpringYield::kGains)) limits_ |= kLimitCurrent;
+  keepResisting(wanted, codec_.dampingStep());
 }
 
 void RobStride_Motor::followCurrent(const Target& target) noexcept {
