@@ -30,7 +30,7 @@ struct MotorSettings {
   int command_divider = 1;           ///< A command is sent in every n-th tick,
   int command_phase = 0;             ///< offset by so many ticks: 0 to n - 1.
   double scale_error = kScaleError;  ///< See MotorTraits::scaled_speed; 0: not compared.
-  float own_limit_a = 0.0F;          ///< Of the drive's own loops, MotorTraits::own_loops; 0: unknown.
+  float own_limit_a = 0.0F;          ///< Current limit of MotorTraits::own_loops; 0: unknown.
   OwnValues own;
 };
 

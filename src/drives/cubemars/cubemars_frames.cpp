@@ -38,7 +38,7 @@ constexpr int kMitTemperatureOffsetC = 40;  // cubemars_driver_node and the manu
 /// `value` from `low` to `high` as a number of `bits`, cut off like the vendor's code does.
 [[nodiscard]] std::uint32_t toCode(double value, double low, double high, unsigned bits) noexcept {
   const double codes = static_cast<double>((1U << bits) - 1U);
-  constexpr double kRounding = 1e-9;  // what was decoded becomes the same number again
+  constexpr double kRounding = 1e-9;  // a number that was decoded becomes the same again
   const double code = (value - low) / (high - low) * codes + kRounding;
   return std::isnan(code) ? 0U : static_cast<std::uint32_t>(std::clamp(code, 0.0, codes));
 }

@@ -115,7 +115,7 @@ struct Dragged {
   const char* keys;
   Acting left;  ///< kNothing: a fault.
 
-  /// What is left is not what the keys ask for.
+  /// The action that is left is not the one that the keys ask for.
   [[nodiscard]] bool replaced() const {
     return left != Acting::kNothing &&
            !std::string_view{keys}.starts_with(left == Acting::kDamp ? "damp" : "brake");
