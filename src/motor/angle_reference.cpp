@@ -9,12 +9,14 @@
 namespace rc10 {
 
 void AngleReference::update(double position_deg, bool may_restart, bool may_return) noexcept {
-  if (!begun_ || (turn_unclear_ && may_restart) || (lost_ && may_return)) {
+  if (!begun_ || (turn_unclear_ && may_restart) || (lost_ && (may_return || !limited()))) {
     const bool power_on = config_.zero_at_power_on;
     const bool absolute = config_.absolute && !power_on;
-    // The number of turns at power-up says nothing.
+    // The number of turns of the drive says nothing.
     const double within_turn_deg = absolute ? shortestAngle(config_.zero_deg, position_deg) : 0.0;
-    const auto first_deg = absolute ? firstAngle(within_turn_deg, config_.travel) : std::optional{0.0};
+    const double near_deg = begun_ ? totalAngleDeg() : 0.0;
+    const auto first_deg =
+        absolute ? firstAngle(within_turn_deg, config_.travel, near_deg) : std::optional{0.0};
     offset_deg_ = first_deg.value_or(within_turn_deg) - position_deg;
     known_ = !forgotten_ && ((absolute && first_deg) || power_on);
     turn_unclear_ = !forgotten_ && !first_deg;
@@ -22,6 +24,10 @@ void AngleReference::update(double position_deg, bool may_restart, bool may_retu
     lost_ = false;
   }
   position_deg_ = position_deg;
+}
+
+bool AngleReference::limited() const noexcept {
+  return std::isfinite(config_.travel.min_deg) && std::isfinite(config_.travel.max_deg);
 }
 
 bool AngleReference::setZero(double angle_deg) noexcept {
@@ -55,8 +61,7 @@ void AngleReference::lose() noexcept {
 }
 
 void AngleReference::doubtTurn() noexcept {
-  const bool limited = std::isfinite(config_.travel.min_deg) && std::isfinite(config_.travel.max_deg);
-  if (begun_ && (limited || !config_.absolute)) lose();
+  if (begun_ && (limited() || !config_.absolute)) lose();
 }
 
 }  // namespace rc10

@@ -18,14 +18,16 @@ class AngleReference {
   explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
   /// A new reference is a jump of the angle. `may_restart`: allowed once an unclear turn has become clear, as
-  /// no target follows the angle. `may_return`: allowed after the reference was lost.
+  /// no target follows the angle. `may_return`: allowed after the reference was lost; without a travel it is
+  /// none, and needs no leave.
   void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
   /// The angle goes on without a known reference until setZero(), whatever becomes of the drive meanwhile.
   void forget() noexcept;
   /// The drive may have lost turns: the angle goes on, but without a known reference. An absolute drive
-  /// starts again as at power-up, once it may, but in the frame of the last setZero().
+  /// finds it again, once it may, in the frame of the last setZero(): on the turn of its travel, without one
+  /// on that nearest to where it was.
   void lose() noexcept;
   /// The drive may have been off, and the shaft turned meanwhile: lose(). Only an absolute drive without a
   /// travel goes on, for it has no wrong turn.
@@ -43,6 +45,8 @@ class AngleReference {
   }
 
  private:
+  [[nodiscard]] bool limited() const noexcept;
+
   Config config_;
   bool begun_ = false;
   bool known_ = false;

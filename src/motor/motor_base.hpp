@@ -78,7 +78,8 @@ class Motor_Base : public FrameListener {
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may
-  /// have lost turns, knows its angle again as at power-up. Not while an angle is followed: it would jump.
+  /// have lost turns, knows its angle again. Not while an angle is followed: the turn of its travel would be
+  /// a jump.
   /// Asked for only while the angle has no known reference.
   virtual void restoreReference(ControlMode) noexcept {}
 

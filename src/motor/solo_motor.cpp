@@ -67,7 +67,7 @@ void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) 
 }
 
 void SoloMotor::takeAngle(double drive_position_deg) noexcept {
-  // An angle that is followed must not leap by turns, for an absolute drive neither: it stays lost.
+  // An angle that is followed must not leap to the turn of its travel: it stays lost.
   reference_.update(toOutput(drive_position_deg), !obeying(), !obeying() || !follows_angle_);
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);

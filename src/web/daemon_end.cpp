@@ -44,7 +44,8 @@ std::string lastLines(const std::string& text) {
 
 DaemonEnd readDaemonEnd(const std::string& run_dir, const std::optional<std::string>& robot) {
   DaemonEnd end;
-  const auto path = namesFiles(robot) ? link::logPath(run_dir, *robot) : newestLeftFile(run_dir, ".log");
+  const auto path =
+      robot && namesFiles(*robot) ? link::logPath(run_dir, *robot) : newestLeftFile(run_dir, ".log");
   if (const auto log = endOf(path)) {
     const auto before = endOf(path + ".1");
     end.log = lastLines((before ? before->text : std::string{}) + log->text);

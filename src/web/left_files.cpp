@@ -62,8 +62,8 @@ std::optional<LeftText> readLeft(const std::string& path) {
   return LeftText{std::move(text), status.st_mtim};
 }
 
-bool namesFiles(const std::optional<std::string>& robot) noexcept {
-  return robot && !robot->empty() && robot->find('/') == std::string::npos;
+bool namesFiles(const std::string& robot) noexcept {
+  return !robot.empty() && robot.find('/') == std::string::npos;
 }
 
 std::string newestLeftFile(const std::string& run_dir, std::string_view ending,

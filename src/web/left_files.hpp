@@ -21,7 +21,7 @@ struct LeftText {
 [[nodiscard]] std::optional<LeftText> readLeft(const std::string& path);
 
 /// Whether files in the run folder may be called by this robot: it has a name, and that is no path.
-[[nodiscard]] bool namesFiles(const std::optional<std::string>& robot) noexcept;
+[[nodiscard]] bool namesFiles(const std::string& robot) noexcept;
 
 /// The newest file of this ending; empty: none. With a robot, those of a start are passed over whose text of
 /// the configuration names another one.

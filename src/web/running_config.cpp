@@ -12,7 +12,8 @@ namespace rc10::web {
 namespace {
 
 std::optional<LeftText> lastAccepted(const std::string& run_dir, const std::optional<std::string>& robot) {
-  return readLeft(namesFiles(robot) ? link::configPath(run_dir, *robot) : newestLeftFile(run_dir, ".config"));
+  return readLeft(robot && namesFiles(*robot) ? link::configPath(run_dir, *robot)
+                                              : newestLeftFile(run_dir, ".config"));
 }
 
 std::optional<std::string> onlyRobotIn(const std::string& run_dir) {
@@ -39,7 +40,7 @@ FoundConfig readRunningConfig(const std::string& run_dir, const std::string& rob
 std::optional<AcceptedConfig> readAcceptedConfig(const std::string& run_dir,
                                                  const std::optional<std::string>& robot) {
   const auto of = robot && !robot->empty() ? robot : onlyRobotIn(run_dir);
-  if (!namesFiles(of)) return std::nullopt;
+  if (!of || !namesFiles(*of)) return std::nullopt;
   auto left = readLeft(link::configPath(run_dir, *of));
   if (!left) return std::nullopt;
   return AcceptedConfig{.robot = *of, .text = std::move(left->text)};

@@ -270,7 +270,7 @@ def test_a_gap_that_loses_the_reference() -> None:
         assert not motor.zeroed
         log.check()
         proven(
-            "feedback gap that may hide a turn",
+            "feedback gap that may hide a turn of an M3508",
             "angle targets are refused; the motor stays ACTIVE",
             None,
             None,

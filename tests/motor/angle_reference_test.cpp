@@ -81,13 +81,18 @@ TEST(AngleReference, ALostReferenceGoesOnWithoutAJump) {
   EXPECT_EQ(reference.totalAngleDeg(), 11.0);
 }
 
-TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgain) {
+TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgainOnTheTurnNearestToWhereItWas) {
   auto reference = lostOnItsSecondTurn();
   reference.update(371.0);
   EXPECT_TRUE(reference.known());
-  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 371.0);
   reference.update(731.0);
-  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 371.0) << "it begins anew once";
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 731.0) << "it is found once";
+  reference.lose();
+  reference.update(-100.0);  // its drive was restarted
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 620.0);
+  EXPECT_DOUBLE_EQ(reference.positionFor(620.0), -100.0);
 }
 
 TEST(AngleReference, OneThatIsForgottenStaysUnknownUntilItIsSetThoughItsEncoderIsAbsolute) {
@@ -151,17 +156,25 @@ TEST(AngleReference, AShaftThatMayHaveBeenTurnedIsWhereItsTravelSays) {
   EXPECT_EQ(wheel.totalAngleDeg(), 731.0);
 }
 
-TEST(AngleReference, AnAbsoluteAngleThatIsFollowedGoesOnWithoutItsReference) {
-  AngleReference reference({.absolute = true});
-  reference.update(10.0);
-  reference.update(730.0, false, false);
-  reference.lose();
-  reference.update(731.0, false, false);
-  EXPECT_FALSE(reference.known());
-  EXPECT_EQ(reference.totalAngleDeg(), 731.0) << "no leap of two turns";
-  reference.update(731.0, false, true);
-  EXPECT_TRUE(reference.known());
-  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 11.0);
+TEST(AngleReference, AnAbsoluteAngleThatIsFollowedDoesNotLeapToTheTurnOfItsTravel) {
+  AngleReference arm({.absolute = true, .travel = {-90.0, 200.0}});
+  arm.update(200.0, false, false);
+  arm.update(250.0, false, false);  // pushed far beyond its end
+  arm.lose();
+  arm.update(251.0, false, false);
+  EXPECT_FALSE(arm.known());
+  EXPECT_EQ(arm.totalAngleDeg(), 251.0);
+  arm.update(251.0, false, true);
+  EXPECT_TRUE(arm.known());
+  EXPECT_DOUBLE_EQ(arm.totalAngleDeg(), -109.0);
+  AngleReference wheel({.absolute = true});
+  wheel.update(10.0);
+  wheel.update(730.0, false, false);
+  wheel.lose();
+  EXPECT_FALSE(wheel.known());
+  wheel.update(11.0, false, false);  // its drive was restarted
+  EXPECT_TRUE(wheel.known());
+  EXPECT_DOUBLE_EQ(wheel.totalAngleDeg(), 731.0) << "no leap of two turns, now or later";
 }
 
 TEST(AngleReference, AZeroThatIsSetAfterALossStays) {

@@ -238,7 +238,7 @@ TEST(DjiReference, AGearedMotorHasNoZeroForTheFile) {
   EXPECT_TRUE(std::isnan(motor.zeroForFile()));
 }
 
-TEST(DjiReference, AfterALongGapAnAbsoluteEncoderStartsAgainAsAtPowerUp) {
+TEST(DjiReference, AfterALongGapAnAbsoluteEncoderIsOnTheTurnNearestToWhereItWas) {
   DJI_Motor motor(djiConfig(kGM6020));
   DjiFeeder feeder(motor);
   for (int i = 0; i < 400; ++i)
@@ -248,7 +248,7 @@ TEST(DjiReference, AfterALongGapAnAbsoluteEncoderStartsAgainAsAtPowerUp) {
   EXPECT_NEAR(motor.getAngle().value, 45.0, 1e-3);
   feeder.tick();
   EXPECT_TRUE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.getTotalAngle().value, 45.0, 1e-6);
+  EXPECT_NEAR(motor.getTotalAngle().value, 2 * 360.0 + 45.0, 1e-6);
 }
 
 TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlled) {
@@ -266,7 +266,20 @@ TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlled) {
   motor.clearTarget();  // as the supervisor does when the reference is lost
   feeder.feedAndTick({.position = 91});
   EXPECT_TRUE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.getTotalAngle().value, 4.0, 0.01);
+  EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01) << "a stream that goes on is no leap either";
+}
+
+TEST(DjiReference, WithATravelAnAbsoluteEncoderIsOnItsTurnAgain) {
+  auto settings = djiConfig(kGM6020);
+  settings.travel = {.min_deg = -90.0, .max_deg = 200.0};
+  DJI_Motor motor(settings);
+  DjiFeeder feeder(motor);
+  feeder.feedAndTick({.position = 8192 - 2048});  // 270 deg: -90
+  EXPECT_NEAR(motor.getTotalAngle().value, -90.0, 0.01);
+  (void)feeder.feed({.position = 4096}, milliseconds{500});
+  feeder.tick();
+  EXPECT_TRUE(motor.feedback().zeroed);
+  EXPECT_NEAR(motor.getTotalAngle().value, 180.0, 0.01) << "-180 is nearer, but beyond it";
 }
 
 TEST(DjiReference, AGearedGM6020IsNotAbsolute) {

@@ -20,6 +20,12 @@ TEST(FirstAngle, WithoutBothLimitsIsWithinHalfATurn) {
   EXPECT_DOUBLE_EQ(firstAngle(-190.0, {.max_deg = 0.0}).value(), 170.0);
 }
 
+TEST(FirstAngle, WithoutBothLimitsIsOnTheTurnNearestToWhereItWas) {
+  EXPECT_DOUBLE_EQ(firstAngle(5.0, {}, 725.0).value(), 725.0);
+  EXPECT_DOUBLE_EQ(firstAngle(-170.0, {.min_deg = 0.0}, 545.0).value(), 550.0);
+  EXPECT_DOUBLE_EQ(firstAngle(5.0, kArm, 725.0).value(), 5.0) << "its travel says which";
+}
+
 TEST(FirstAngle, IsRightOverTheWholeTravelAndHalfTheGapBeyond) {
   for (const Travel travel : {kArm, Travel{100.0, 440.0}, Travel{-3000.0, -2990.0}, Travel{0.0, 359.0}}) {
     const double gap_deg = kDegPerTurn - (travel.max_deg - travel.min_deg);

@@ -161,6 +161,42 @@ TEST(RobStrideMotor, TheEndOfAScaleThatDoesNotWrapLosesTheReference) {
   EXPECT_FALSE(bench.motor.feedback().angle_at_end);
 }
 
+TEST(RobStrideMotor, AtTheEndOfItsScaleAPlaceIsNotToldAndBackWithinItIs) {
+  Bench place(controlled("position", "CyberGear"));
+  Bench spring(controlled("operation", "CyberGear"));
+  const auto current_limit = [&place](FrameKind kind) {
+    const auto frames = place.tick(kind);
+    for (const auto& frame : frames) {
+      if (readLittleEndian<std::uint16_t>(frame.payload(), 0) == robstride::parameter::kCurrentLimit)
+        return readLittleEndian<float>(frame.payload(), 4);
+    }
+    return -1.0F;
+  };
+  for (auto* bench : {&place, &spring}) bench->run(12.4);
+  EXPECT_GT(current_limit(FrameKind::kBrake), 0.0F);
+  for (auto* bench : {&place, &spring}) bench->runAfter(milliseconds{2}, 13.0);
+  EXPECT_EQ(current_limit(FrameKind::kBrake), 0.0F);
+  EXPECT_EQ(spring.operation({.mode = ControlMode::kTotalAngle, .value = 0.0}).stiffness_nm_per_rad, 0.0);
+  for (auto* bench : {&place, &spring}) bench->runAfter(milliseconds{2}, 12.3);
+  EXPECT_GT(current_limit(FrameKind::kBrake), 0.0F);
+  EXPECT_GT(spring.operation({.mode = ControlMode::kTotalAngle, .value = 0.0}).stiffness_nm_per_rad, 0.0);
+  const double moved_deg = -0.1 * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(place.motor.feedback().total_angle_deg, moved_deg, 0.1) << "what was cut off is made up for";
+}
+
+TEST(RobStrideMotor, AnAbsoluteAngleInDoubtIsNoReferenceWhileItObeys) {
+  auto settings = controlled("operation");
+  Bench bench(settings);
+  bench.run(1.0);
+  bench.tick(FrameKind::kIdle);
+  bench.runAfter(milliseconds{300}, 1.0);
+  bench.run(1.0);
+  EXPECT_FALSE(bench.motor.feedback().zeroed) << "its targets would only be damped";
+  bench.tick(FrameKind::kPoll);
+  bench.run(1.0);
+  EXPECT_TRUE(bench.motor.feedback().zeroed);
+}
+
 TEST(RobStrideMotor, ALongSilenceLosesTheReferenceOfACyberGear) {
   Bench bench(robStrideSettings("CyberGear"));
   bench.run(0.3);

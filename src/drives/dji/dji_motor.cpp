@@ -74,7 +74,7 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
 
   if (first) {
     if (absolute_ && !zero_at_power_on_) {
-      findTurn(shortestAngle(zero_deg_, reportedAngleDeg()));
+      findTurn(shortestAngle(zero_deg_, reportedAngleDeg()), 0.0);
     } else {
       setReference(0.0);
       feedback_.zeroed = zero_at_power_on_;
@@ -87,15 +87,15 @@ FrameVerdict DJI_Motor::updateFeedback(const CanFrame& frame) noexcept {
   updateAngles();
   // Turned by hand to where its turn is clear.
   if (!first && feedback_.turn_unclear && dutyOf(ordered()) != DriveDuty::kObey) {
-    findTurn(feedback_.total_angle_deg);
+    findTurn(feedback_.total_angle_deg, feedback_.total_angle_deg);
     updateAngles();
   }
   return FrameVerdict::kAccepted;
 }
 
-void DJI_Motor::findTurn(double within_turn_deg) noexcept {
-  const auto first_deg = firstAngle(within_turn_deg, travel_);
-  setReference(first_deg.value_or(within_turn_deg));
+void DJI_Motor::findTurn(double angle_deg, double near_deg) noexcept {
+  const auto first_deg = firstAngle(angle_deg, travel_, near_deg);
+  setReference(first_deg.value_or(angle_deg));
   feedback_.zeroed = first_deg.has_value();
   feedback_.turn_unclear = !first_deg;
 }
@@ -147,8 +147,11 @@ void DJI_Motor::forgetReference() noexcept {
 }
 
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
-  if (!absolute_ || forgotten_ || !encoder_.referenceLost() || isAngle(followed)) return;
-  findTurn(feedback_.total_angle_deg);
+  // Without a travel its turn is that of before: a hold may go on.
+  const bool limited = std::isfinite(travel_.min_deg) && std::isfinite(travel_.max_deg);
+  const bool would_jump = isAngle(followed) && (limited || ordered() != FrameKind::kHold);
+  if (!absolute_ || forgotten_ || !encoder_.referenceLost() || would_jump) return;
+  findTurn(feedback_.total_angle_deg, feedback_.total_angle_deg);
   encoder_.acknowledgeLoss();
   updateAngles();
 }

@@ -21,7 +21,7 @@ namespace rc10 {
 /// setZero(); a gap too long to know the turns makes that so again. GM6020 without a gear knows its
 /// angle: zeroed from the first sample, total angle then in [-180, 180). After a gap too long its
 /// angle stays right while the number of turns is in doubt: zeroed = false, and without a jump, for
-/// as long as an angle is being controlled; then it starts again as at power-up.
+/// as long as an angle is being controlled; then its turn is that of its travel, without one that of before.
 ///
 /// Loops advance on new samples only. After 100 ms without one they stop, and their effort is 0.
 class DJI_Motor : public Motor_Base {
@@ -74,7 +74,8 @@ class DJI_Motor : public Motor_Base {
   [[nodiscard]] double reportedAngleDeg() const noexcept {
     return static_cast<double>(encoder_.totalCounts()) * degrees_per_count_;
   }
-  void findTurn(double within_turn_deg) noexcept;
+  /// firstAngle(), of an angle that is right but for whole turns.
+  void findTurn(double angle_deg, double near_deg) noexcept;
   /// Valid until the next call.
   [[nodiscard]] const Target& wantedTarget() noexcept;
   [[nodiscard]] Target damped() const noexcept;

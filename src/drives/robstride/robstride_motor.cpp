@@ -186,6 +186,8 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
   acceptSample(received, position_rad_ * kDegPerRad);
   // acceptSample() finds an absolute reference again, even at the end of the scale.
   if (feedback_.angle_at_end) loseReference();
+  // Its targets would not be followed.
+  if (angles_in_doubt_ && obeying()) feedback_.zeroed = false;
   enabling_.onFeedback(seen);
 }
 
@@ -205,10 +207,11 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
                                            static_cast<double>(seconds(longestApart(gap, feedbackPeriod())));
   const bool jumped = std::abs(moved) > reach;
   if (jumped) ++feedback_.jumps;
-  const bool follows = gap <= traits().restart_silence && !jumped && !feedback_.angle_at_end;
+  const bool follows = gap <= traits().restart_silence && !jumped;
   if (!follows) doubtAngles();
+  // What was cut off at the end is made up for on the way back.
   position_rad_ += moved;
-  speed_.add(position_rad_, follows, received);
+  speed_.add(position_rad_, follows && !feedback_.angle_at_end, received);
 }
 
 bool RobStride_Motor::setZero(double angle_deg) noexcept {

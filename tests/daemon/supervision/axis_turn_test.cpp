@@ -8,50 +8,13 @@
 #include <string_view>
 
 #include "config/load_config.hpp"
+#include "daemon/supervision/absolute_encoders.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::axis_turn_test {
 namespace {
 
-struct Subject {
-  const char* name;
-  const char* motor;
-  const char* bus = "";
-};
-
-void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
-
-const Subject kSubjects[] = {
-    {"Dji", "model: GM6020, id: 1"},
-    {"DjiReversed", "model: GM6020, id: 1, direction: -1, zero_deg: 70"},
-    {"Damiao", "model: DM4310, id: 1, master_id: 17"},
-    {"DamiaoReversed", "model: DM4310, id: 1, master_id: 17, direction: -1, zero_deg: 70"},
-    {"RobStride", "model: RS00, id: 3"},
-    {"CubeMarsServo", "model: AK80-9, id: 5, output_encoder: true"},
-    {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit, output_encoder: true"},
-    {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true",
-     "data_bitrate: 5000000\n    "},
-    {"MoteusGeared",
-     "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true, rotor_to_output_ratio: 0.1",
-     "data_bitrate: 5000000\n    "},
-    {"MyActuator", "model: RMD-X8-20, id: 11, absolute_encoder: true"},
-    {"LkTech", "model: LK-MG5010E-i10, id: 12"},
-    {"Vesc",
-     "model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, feedback_hz: 500, angle: encoder"},
-};
-
-RobotConfig configOf(const Subject& subject, const std::string& limits, double parked_deg) {
-  auto outcome =
-      parseRobotConfig(std::string{"robot: turn\nrealtime: preferred\nbuses:\n  - name: bench\n"
-                                   "    type: sim\n    "} +
-                           subject.bus + "motors:\n      - {name: arm, " + subject.motor + limits +
-                           ", simulated: {initial_angle_deg: " + std::to_string(parked_deg) + "}}\n",
-                       "turn.yaml");
-  EXPECT_TRUE(outcome.config) << outcome.errorText();
-  return outcome.config.value_or(twoWheelsAndYaw());
-}
-
-class TurnTest : public ::testing::TestWithParam<Subject> {
+class TurnTest : public ::testing::TestWithParam<AbsoluteEncoder> {
  protected:
   static constexpr std::size_t kArm = 0;
 
@@ -83,8 +46,8 @@ class TurnTest : public ::testing::TestWithParam<Subject> {
 TEST_P(TurnTest, IsFoundAtEachPlaceOfTheTravel) {
   const double zero_deg = reversed() ? 70.0 : 0.0;
   for (const double parked_deg : {-120.0, -90.0, -30.0, 0.0, 95.0, 179.0, 181.0, 190.0, 200.0, 230.0}) {
-    VirtualRobot robot(configOf(GetParam(), ", angle_min_deg: -90, angle_max_deg: 200",
-                                (reversed() ? -1.0 : 1.0) * (parked_deg + zero_deg)));
+    VirtualRobot robot(robotOfArm(GetParam(), ", angle_min_deg: -90, angle_max_deg: 200",
+                                  (reversed() ? -1.0 : 1.0) * (parked_deg + zero_deg)));
     ASSERT_EQ(enable(robot), Refusal::kNone) << parked_deg;
     EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
     EXPECT_NEAR(robot.motor(kArm).feedback.total_angle_deg, parked_deg, 0.5);
@@ -93,7 +56,7 @@ TEST_P(TurnTest, IsFoundAtEachPlaceOfTheTravel) {
 
 TEST_P(TurnTest, ThatIsUnclearKeepsItFromBeingEnabledUntilItsAngleIsSet) {
   // Some drives can be told no more than two turns to either side: all of it lies within, read from 370 deg.
-  VirtualRobot robot(configOf(GetParam(), ", angle_min_deg: -250, angle_max_deg: 400", 10.0));
+  VirtualRobot robot(robotOfArm(GetParam(), ", angle_min_deg: -250, angle_max_deg: 400", 10.0));
   EXPECT_EQ(enable(robot), Refusal::kTurnUnclear);
   EXPECT_EQ(robot.motor(kArm).status, MotorStatus::kReady);
   EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
@@ -105,7 +68,7 @@ TEST_P(TurnTest, ThatIsUnclearKeepsItFromBeingEnabledUntilItsAngleIsSet) {
 }
 
 TEST_P(TurnTest, OfAWheelWithoutLimitsNeedsNothing) {
-  VirtualRobot robot(configOf(GetParam(), "", 100.0));
+  VirtualRobot robot(robotOfArm(GetParam(), "", 100.0));
   EXPECT_EQ(enable(robot), Refusal::kNone);
   EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
 }
@@ -113,7 +76,7 @@ TEST_P(TurnTest, OfAWheelWithoutLimitsNeedsNothing) {
 // The arm was homed 37 deg from where its file has the zero.
 TEST_P(TurnTest, IsInTheFrameOfItsLastZeroAfterItsDriveWasRestarted) {
   for (const char* limits : {"", ", angle_min_deg: -10, angle_max_deg: 100"}) {
-    VirtualRobot robot(configOf(GetParam(), limits, (reversed() ? -1.0 : 1.0) * 107.0));
+    VirtualRobot robot(robotOfArm(GetParam(), limits, (reversed() ? -1.0 : 1.0) * 107.0));
     for (int i = 0; i < 4000 && robot.motor(kArm).status != MotorStatus::kReady; ++i) robot.run(1);
     for (int i = 0; i < 4000 && !robot.motor(kArm).feedback.zeroed; ++i) robot.run(1);
     ASSERT_TRUE(robot.motor(kArm).feedback.zeroed) << limits;
@@ -132,12 +95,12 @@ TEST_P(TurnTest, IsInTheFrameOfItsLastZeroAfterItsDriveWasRestarted) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TurnTest, ::testing::ValuesIn(kSubjects),
+INSTANTIATE_TEST_SUITE_P(All, TurnTest, ::testing::ValuesIn(kAbsoluteEncoders),
                          [](const auto& each) { return std::string{each.param.name}; });
 
 TEST(TurnOfAnArm, IsNotWrongByOneAndItsTargetLeadsNowhereElse) {
   VirtualRobot robot(
-      configOf({"", "model: GM6020, id: 1"}, ", angle_min_deg: -90, angle_max_deg: 200", 190.0));
+      robotOfArm({"", "model: GM6020, id: 1"}, ", angle_min_deg: -90, angle_max_deg: 200", 190.0));
   robot.run(10);
   ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
   const auto start_deg = robot.simBus().drive(0).physics().outputAngleDeg();

@@ -1,0 +1,169 @@
+// A stream of angles on a shaft without a travel, several turns from where it was switched on, whose feedback
+// has a gap: it goes on, and the shaft turns no way of its own, in each family with an absolute encoder.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "daemon/supervision/absolute_encoders.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::axis_lost_angle_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kArm = 0;
+constexpr double kFarDeg = 500.0;
+
+enum class Gap { kDriveSilent, kComputerPauses, kDriveRestarts };
+
+struct Loss {
+  const char* name;
+  Gap gap;
+  int ticks;
+};
+
+void PrintTo(const Loss& loss, std::ostream* out) { *out << loss.name; }
+
+constexpr Loss kLosses[] = {
+    {"Short", Gap::kDriveSilent, 35},
+    {"Silence", Gap::kDriveSilent, 150},
+    {"LongSilence", Gap::kDriveSilent, 380},
+    {"Offline", Gap::kDriveSilent, 1200},
+    {"Pause", Gap::kComputerPauses, 60},
+    {"LongPause", Gap::kComputerPauses, 250},
+    {"Restart", Gap::kDriveRestarts, 3},
+    {"RestartSilent", Gap::kDriveRestarts, 300},
+    {"RestartOffline", Gap::kDriveRestarts, 1200},
+};
+
+class LostAngle : public ::testing::TestWithParam<std::tuple<AbsoluteEncoder, Loss>> {
+ protected:
+  void start(FallbackAction on_timeout, bool joint = false) {
+    joint_ = joint;
+    auto config =
+        robotOfArm(subject(), ", feedback_timeout_ms: 400", sign() * zero(),
+                   joint ? "modules:\n  - {name: lift, type: joint, motor: arm, max_velocity_deg_s: "
+                           "400, max_acceleration_deg_s2: 2000}\n"
+                         : "");
+    auto& arm = config.buses[0].motors[0];
+    const bool damps = arm.traits().frames.damp != Provision::kUnsupported;
+    arm.fallback.on_timeout =
+        on_timeout == FallbackAction::kDamp && !damps ? FallbackAction::kBrake : on_timeout;
+    robot_ = std::make_unique<VirtualRobot>(config);
+    robot_->run(3000);
+    enable();
+    ASSERT_NEAR(shaftDeg(), 0.0, 1.0);
+    for (double deg = 0.0; deg < kFarDeg; deg += 0.25) stream(deg);
+    for (int i = 0; i < 1500; ++i) stream(kFarDeg);
+    ASSERT_NEAR(shaftDeg(), kFarDeg, 5.0);
+    ASSERT_NEAR(totalDeg(), shaftDeg(), 1.0);
+  }
+  void enable() {
+    for (int i = 0; i < 12 && robot_->motor(kArm).status != MotorStatus::kActive; ++i) {
+      (void)robot_->order(Operation::kClear);
+      (void)robot_->order(Operation::kEnable);
+      for (int k = 0; k < 500; ++k) stream(asked_deg_);
+    }
+    ASSERT_EQ(robot_->motor(kArm).status, MotorStatus::kActive);
+  }
+  /// The message of a tick, from a client that does not look, and the tick.
+  void stream(double deg, std::uint64_t periods = 1) {
+    asked_deg_ = deg;
+    if (joint_) {
+      SignalMessage message;
+      message.client = "program";
+      message.session = 7;
+      message.received = robot_->now();
+      message.deadline = robot_->now() + 500ms;
+      message.values.fill(kNoSignal);
+      message.values[0] = deg;
+      ASSERT_TRUE(robot_->exchange().signals.push(message));
+    } else {
+      robot_->command(kArm, {.mode = ControlMode::kTotalAngle, .value = deg}, 500ms);
+    }
+    robot_->tick(periods);
+    if (watched_) farthest_deg_ = std::max(farthest_deg_, std::fabs(shaftDeg() - kFarDeg));
+  }
+  void lose() {
+    const auto& loss = std::get<Loss>(GetParam());
+    watched_ = true;
+    if (loss.gap == Gap::kComputerPauses) return stream(kFarDeg, static_cast<std::uint64_t>(loss.ticks));
+    const bool restarts = loss.gap == Gap::kDriveRestarts;
+    if (restarts) robot_->simBus().drive(0).restart();
+    // A drive without power hears nothing, either.
+    restarts ? robot_->freezeBus(0, true) : robot_->simBus().silence(0, true);
+    for (int i = 0; i < loss.ticks; ++i) {
+      stream(kFarDeg);
+      if (restarts) (void)robot_->takeFrames();
+    }
+    restarts ? robot_->freezeBus(0, false) : robot_->simBus().silence(0, false);
+  }
+  /// It goes on, and somebody enables it anew where it is not ACTIVE any more.
+  void goOn() {
+    for (int i = 0; i < 1500; ++i) stream(kFarDeg);
+    // Some ask their drive for its turns while it is enabled, and for them alone.
+    if (!robot_->motor(kArm).feedback.zeroed) (void)robot_->order(Operation::kDisable);
+    enable();
+    for (int i = 0; i < 2000; ++i) stream(kFarDeg);
+    EXPECT_LT(farthest_deg_, 180.0);
+    EXPECT_TRUE(robot_->motor(kArm).feedback.zeroed);
+    EXPECT_NEAR(totalDeg(), shaftDeg(), 1.0);
+    EXPECT_NEAR(shaftDeg(), kFarDeg, 5.0) << "it is followed again";
+  }
+
+  static const AbsoluteEncoder& subject() { return std::get<AbsoluteEncoder>(GetParam()); }
+  static bool reversed() {
+    return std::string_view{subject().motor}.find("direction") != std::string_view::npos;
+  }
+  static double sign() { return reversed() ? -1.0 : 1.0; }
+  static double zero() { return reversed() ? 70.0 : 0.0; }
+  double shaftDeg() { return sign() * robot_->simBus().drive(0).physics().outputAngleDeg() - zero(); }
+  double totalDeg() { return robot_->motor(kArm).feedback.total_angle_deg; }
+
+  std::unique_ptr<VirtualRobot> robot_;
+  bool joint_ = false;
+  bool watched_ = false;
+  double asked_deg_ = 0.0;
+  double farthest_deg_ = 0.0;  ///< From where the loss found it.
+};
+
+TEST_P(LostAngle, TurnsNoWholeTurnsUnderAStreamThatGoesOn) {
+  start(FallbackAction::kCoast);
+  lose();
+  goOn();
+}
+
+TEST_P(LostAngle, TurnsNoWholeTurnsAfterItWasHeld) {
+  start(FallbackAction::kHold);
+  lose();
+  goOn();
+}
+
+TEST_P(LostAngle, TurnsNoWholeTurnsAfterItWasDamped) {
+  start(FallbackAction::kDamp);
+  lose();
+  goOn();
+}
+
+TEST_P(LostAngle, TurnsNoWholeTurnsUnderAJoint) {
+  start(FallbackAction::kCoast, true);
+  lose();
+  goOn();
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, LostAngle,
+                         ::testing::Combine(::testing::ValuesIn(kAbsoluteEncoders),
+                                            ::testing::ValuesIn(kLosses)),
+                         [](const auto& each) {
+                           return std::string{std::get<0>(each.param).name} + std::get<1>(each.param).name;
+                         });
+
+}  // namespace
+}  // namespace rc10::test::axis_lost_angle_test
