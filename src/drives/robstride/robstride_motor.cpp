@@ -209,7 +209,7 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
   if (jumped) ++feedback_.jumps;
   const bool follows = gap <= traits().restart_silence && !jumped;
   if (!follows) doubtAngles();
-  // What was cut off at the end is made up for on the way back.
+  // The way that was cut off at the end is made up for on the way back.
   position_rad_ += moved;
   speed_.add(position_rad_, follows && !feedback_.angle_at_end, received);
 }
