@@ -34,8 +34,9 @@ class ModuleRobot {
   /// Whether a target of this module would be obeyed now: the motor is ACTIVE, nobody else commands it, and
   /// the module's inputs are not from before it was enabled.
   [[nodiscard]] virtual bool obeys(std::size_t motor) const noexcept = 0;
-  /// Requests to disable motors since the start, of clients and modules; of those that nobody asked for, only
-  /// one that ended an enabling. Who enables by itself stops at the next one.
+  /// Requests to disable a motor since the start, of clients and modules, one for each motor that they name;
+  /// of those that nobody asked for, only those that ended an enabling. Who enables by itself stops at the
+  /// next.
   [[nodiscard]] virtual std::uint32_t disables() const noexcept = 0;
   /// Highest speed that the reduced mode leaves the motor now, rpm; infinite where it leaves it all. Each
   /// motor is held to its own: who divides a motion among several keeps below the lowest.

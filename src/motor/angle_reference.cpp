@@ -9,7 +9,7 @@
 namespace rc10 {
 
 void AngleReference::update(double position_deg, bool may_restart, bool may_return) noexcept {
-  if (!begun_ || (turn_unclear_ && may_restart) || (lost_ && (may_return || !limited()))) {
+  if (!begun_ || (turn_unclear_ && may_restart) || (lost_ && (may_return || !config_.travel.bothEnds()))) {
     const bool power_on = config_.zero_at_power_on;
     const bool absolute = config_.absolute && !power_on;
     // The number of turns of the drive says nothing.
@@ -22,12 +22,17 @@ void AngleReference::update(double position_deg, bool may_restart, bool may_retu
     turn_unclear_ = !forgotten_ && !first_deg;
     begun_ = true;
     lost_ = false;
+  } else if (drifts_) {
+    offset_deg_ += position_deg_ - position_deg;  // the turns that are known now are no way
   }
+  drifts_ = false;
   position_deg_ = position_deg;
 }
 
-bool AngleReference::limited() const noexcept {
-  return std::isfinite(config_.travel.min_deg) && std::isfinite(config_.travel.max_deg);
+void AngleReference::drift(double position_deg) noexcept {
+  if (!drifts_) offset_deg_ += position_deg_ - position_deg;
+  drifts_ = true;
+  position_deg_ = position_deg;
 }
 
 bool AngleReference::setZero(double angle_deg) noexcept {
@@ -55,13 +60,14 @@ void AngleReference::forget() noexcept {
 }
 
 void AngleReference::lose() noexcept {
+  drifts_ = false;
   known_ = false;
   turn_unclear_ = false;
   lost_ = config_.absolute && !config_.zero_at_power_on && !forgotten_;
 }
 
 void AngleReference::doubtTurn() noexcept {
-  if (begun_ && (limited() || !config_.absolute)) lose();
+  if (begun_ && (config_.travel.bothEnds() || !config_.absolute)) lose();
 }
 
 }  // namespace rc10

@@ -18,9 +18,12 @@ class AngleReference {
   explicit AngleReference(const Config& config) noexcept : config_(config) {}
 
   /// A new reference is a jump of the angle. `may_restart`: allowed once an unclear turn has become clear, as
-  /// no target follows the angle. `may_return`: allowed after the reference was lost; without a travel it is
-  /// none, and needs no leave.
+  /// no target follows the angle. `may_return`: allowed after the reference was lost; without both limits the
+  /// angle does not jump, so it is found at once.
   void update(double position_deg, bool may_restart = true, bool may_return = true) noexcept;
+  /// A position that does not tell the angle yet, as whole turns of the count are unknown: the angle goes on
+  /// by its way since the last, and nothing is found.
+  void drift(double position_deg) noexcept;
   /// The present position reads `angle_deg` from now on. False before the first update().
   bool setZero(double angle_deg) noexcept;
   /// The angle goes on without a known reference until setZero(), whatever becomes of the drive meanwhile.
@@ -45,14 +48,13 @@ class AngleReference {
   }
 
  private:
-  [[nodiscard]] bool limited() const noexcept;
-
   Config config_;
   bool begun_ = false;
   bool known_ = false;
   bool turn_unclear_ = false;
   bool lost_ = false;       ///< Absolute only.
   bool forgotten_ = false;  ///< Until setZero().
+  bool drifts_ = false;     ///< The last position was that of drift(), and the reference not lost since.
   double position_deg_ = 0.0;
   double offset_deg_ = 0.0;
 };

@@ -14,8 +14,7 @@ constexpr double kDoubtDeg = 1.0;
 }  // namespace
 
 std::optional<double> firstAngle(double within_turn_deg, const Travel& travel, double near_deg) noexcept {
-  if (!std::isfinite(travel.min_deg) || !std::isfinite(travel.max_deg))
-    return near_deg + shortestAngle(near_deg, within_turn_deg);
+  if (!travel.bothEnds()) return near_deg + shortestAngle(near_deg, within_turn_deg);
   if (!(travel.max_deg - travel.min_deg < kDegPerTurn)) return std::nullopt;
   const double middle_deg = 0.5 * travel.min_deg + 0.5 * travel.max_deg;
   const double from_middle_deg = shortestAngle(middle_deg, within_turn_deg);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -9,6 +10,8 @@ namespace rc10 {
 struct Travel {
   double min_deg = -std::numeric_limits<double>::infinity();
   double max_deg = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool bothEnds() const noexcept { return std::isfinite(min_deg) && std::isfinite(max_deg); }
 };
 
 /// The total angle of an encoder that tells the angle of the output shaft within one turn. Without both

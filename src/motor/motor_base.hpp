@@ -53,6 +53,8 @@ class Motor_Base : public FrameListener {
   bool setTarget(const Target& target) noexcept;
   /// Whether setTarget() takes it.
   [[nodiscard]] bool acceptsTarget(const Target& target) const noexcept;
+  /// The drive can be told a place. False while its own count is in doubt, though the angle may be known.
+  [[nodiscard]] virtual bool placeKnown() const noexcept { return true; }
   bool setTargetCurrent(Amperes current) noexcept;
   bool setTargetRPM(Rpm velocity) noexcept;
   bool setTargetAngle(Degrees angle) noexcept;

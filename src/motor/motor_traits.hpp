@@ -36,8 +36,8 @@ struct MotorTraits {
   int min_feedback_hz = 1;
   int max_feedback_hz = 1000;
   bool asked = false;  ///< Sends only answers: its feedback comes at the command rate.
-  /// An asked drive that is silent for longer may have restarted or turned too far to be followed; 0: no
-  /// limit that one lost answer could pass.
+  /// An asked drive that is silent for longer may have restarted or turned too far to be followed; 0: not
+  /// checked against command_divider.
   Duration restart_silence{};
   /// Key, also set on the drive, that lengthens it; empty: none.
   std::string_view silence_key{};

@@ -53,8 +53,8 @@ SoloMotor::SoloMotor(const MotorSettings& settings, const MotorTraits& traits, d
                   .travel = settings.travel}),
       speed_scale_(settings.scale_error) {}
 
-void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) noexcept {
-  takeAngle(drive_position_deg);
+void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg, bool tells_angle) noexcept {
+  takeAngle(drive_position_deg, tells_angle);
   if (traits_.scaled_speed && obeying()) {
     const auto rpm = static_cast<double>(feedback_.velocity_rpm);
     const bool at_end =
@@ -66,9 +66,12 @@ void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg) 
   ++feedback_.samples;
 }
 
-void SoloMotor::takeAngle(double drive_position_deg) noexcept {
+void SoloMotor::takeAngle(double drive_position_deg, bool tells_angle) noexcept {
   // An angle that is followed must not leap to the turn of its travel: it stays lost.
-  reference_.update(toOutput(drive_position_deg), !obeying(), !obeying() || !follows_angle_);
+  if (tells_angle)
+    reference_.update(toOutput(drive_position_deg), !obeying(), !obeying() || !follows_angle_);
+  else
+    reference_.drift(toOutput(drive_position_deg));
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = reference_.known();

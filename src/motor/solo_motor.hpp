@@ -60,9 +60,10 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] float direction() const noexcept { return drive_per_output_ < 0.0 ? -1.0F : 1.0F; }
 
   /// One sample: counts it, and takes the drive's position (deg, going on over turns) into the angles.
-  void acceptSample(MonotonicTime received, double drive_position_deg) noexcept;
+  /// `tells_angle` false: its whole turns are not known yet, AngleReference::drift().
+  void acceptSample(MonotonicTime received, double drive_position_deg, bool tells_angle = true) noexcept;
   /// The same position, but not a sample: its place among the drive's turns has become known.
-  void takeAngle(double drive_position_deg) noexcept;
+  void takeAngle(double drive_position_deg, bool tells_angle = true) noexcept;
   /// The position that the drive is to be told for a total angle.
   [[nodiscard]] double drivePositionFor(double total_angle_deg) const noexcept {
     return toDrive(reference_.positionFor(total_angle_deg));

@@ -40,7 +40,7 @@ double torqueNm(const SpringLaw& law, const SpringState& at) noexcept {
 
 void keepResisting(SpringLaw& law, double step_nms_per_rad) noexcept {
   const double steps = law.damping_nms_per_rad / step_nms_per_rad;
-  if (onlyResists(law) && steps >= 0.5 && steps < 1.0) law.damping_nms_per_rad = step_nms_per_rad;
+  if (law.resists && steps >= 0.5 && steps < 1.0) law.damping_nms_per_rad = step_nms_per_rad;
 }
 
 void boundGains(SpringLaw& law, double stiffness_nm_per_rad, double damping_nms_per_rad) noexcept {
@@ -56,7 +56,7 @@ bool boundLead(SpringLaw& law, const SpringState& at, double low_rad_s, double h
 }
 
 bool boundParts(SpringLaw& law, const SpringState& at, double most_nm) noexcept {
-  if (onlyResists(law)) return false;
+  if (law.resists) return false;
   bool changed = false;
   if (law.stiffness_nm_per_rad > 0.0) {
     const double most_rad = most_nm / law.stiffness_nm_per_rad;
@@ -74,7 +74,7 @@ bool boundTorque(SpringLaw& law, const SpringState& at, double most_nm, SpringYi
   if (!(std::fabs(torque_nm) > most_nm)) return false;
   const double share = most_nm / std::fabs(torque_nm);
   const double excess_nm = torque_nm - std::copysign(most_nm, torque_nm);
-  switch (onlyResists(law) ? SpringYield::kGains : yields) {
+  switch (law.resists ? SpringYield::kGains : yields) {
     case SpringYield::kErrors:
       law.position_rad = at.position_rad + share * (law.position_rad - at.position_rad);
       law.velocity_rad_s = at.velocity_rad_s + share * (law.velocity_rad_s - at.velocity_rad_s);

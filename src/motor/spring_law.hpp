@@ -13,6 +13,8 @@ struct SpringLaw {
   double stiffness_nm_per_rad = 0.0;
   double damping_nms_per_rad = 0.0;
   double torque_nm = 0.0;
+  /// Damping alone, of damp and brake: it opposes the shaft at any speed, also long after its last frame.
+  bool resists = false;
 };
 
 /// Most that a drive's fields for gains can say, from 0 up; 0: it has none.
@@ -44,12 +46,8 @@ enum class SpringYield : std::uint8_t {
 /// nothing.
 [[nodiscard]] constexpr SpringLaw dampOnly(const SpringLaw& law, double damping_nms_per_rad) noexcept {
   return {.damping_nms_per_rad =
-              law.damping_nms_per_rad > damping_nms_per_rad ? law.damping_nms_per_rad : damping_nms_per_rad};
-}
-
-/// It opposes the shaft at any speed: no place, speed or torque of its own, also long after its last frame.
-[[nodiscard]] constexpr bool onlyResists(const SpringLaw& law) noexcept {
-  return !(law.stiffness_nm_per_rad > 0.0) && law.velocity_rad_s == 0.0 && law.torque_nm == 0.0;
+              law.damping_nms_per_rad > damping_nms_per_rad ? law.damping_nms_per_rad : damping_nms_per_rad,
+          .resists = true};
 }
 
 /// A field that rounds down would leave a fast shaft without a brake: one step of it, where that is nearer
@@ -59,7 +57,7 @@ void keepResisting(SpringLaw& law, double step_nms_per_rad) noexcept;
 /// Gains between 0 and those that a frame can say; not a number: 0.
 void boundGains(SpringLaw& law, double stiffness_nm_per_rad, double damping_nms_per_rad) noexcept;
 
-// Each returns whether it changed the law. Of one that only resists nothing but the damping yields: with a
+// Each returns whether it changed the law. Of one that resists nothing but the damping yields: with a
 // speed, the drive would turn the shaft when frames stop.
 
 /// Position so near that the speed at which spring and damper balance is between `low_rad_s` and `high_rad_s`

@@ -99,7 +99,8 @@ TEST_P(EndOfTheScale, TakesNeitherBrakeNorHoldFromAShaftThatIsBackWithinIt) {
   robot_->simBus().setLoad(kMotor, {.inertia_kg_m2 = 0.05F, .load_torque_nm = 0.3F});
   robot_->run(2000);
   EXPECT_LT(std::fabs(physics().outputRpm()), 5.0);
-  EXPECT_LT(std::fabs(shaftDeg() - subject().end_deg + 50.0), 70.0);
+  EXPECT_GT(shaftDeg(), subject().end_deg - 120.0);
+  EXPECT_LT(shaftDeg(), subject().end_deg + 20.0);
   if (wanted() == Acting::kHold) {
     EXPECT_NEAR(shaftDeg(), robot_->robot().motors()[kMotor].motor->heldAngleDeg(), 35.0)
         << "and the sag of a spring";

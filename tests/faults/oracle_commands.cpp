@@ -43,7 +43,7 @@ constexpr double kAngleSlackDeg = 1.0;
 }
 
 // It stays where it is, as far as the drive can: without a speed or an effort of its own. A drive keeps its
-// last frame when a cable tears, so a speed that a damping is to yield to is one.
+// last frame when a cable tears: a damping with a speed would push then.
 [[nodiscard]] bool staysPut(const Told& told, double measured_rpm) {
   if (told.resistsAtMost()) return true;
   const bool to_a_place = told.law == Told::Law::kAngle || (told.law == Told::Law::kSpring && told.stiff);
@@ -141,7 +141,7 @@ void Oracle::judgeLimits(std::size_t index) {
   const bool pushed_on = told.sum * std::copysign(1.0, measured_rpm) > rounded;
   const bool by_itself = std::fabs(told.effort) <= 2.0 * told.effort_step;
   const bool brakes = told.law == Told::Law::kSpring && (!pushed_on || !by_itself || told.stiff) &&
-                      told.velocity_rpm * measured_rpm > 0.0;  // see slows(); a feed-forward is a hole
+                      told.velocity_rpm * measured_rpm > 0.0;  // see followsShaft(); a feed-forward is a hole
   const double fastest_rpm = brakes ? std::max(most_rpm, std::fabs(measured_rpm)) : most_rpm;
   require(index, std::fabs(told.velocity_rpm) <= fastest_rpm + slack_rpm, "beyond its velocity limit");
   // Whole degrees a second, of the rotor or of the output.

@@ -95,6 +95,35 @@ TEST(AngleReference, AnAbsoluteEncoderFindsItsReferenceAgainOnTheTurnNearestToWh
   EXPECT_DOUBLE_EQ(reference.positionFor(620.0), -100.0);
 }
 
+TEST(AngleReference, ACountWhoseTurnsAreUnknownTellsNoAngleAndItsLeapsAreNoWay) {
+  AngleReference reference({.absolute = true});
+  reference.drift(-134.0);  // ten wraps of 1432 deg from where the drive counts it
+  EXPECT_FALSE(reference.known());
+  EXPECT_FALSE(reference.setZero(0.0));
+  reference.update(14'550.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 150.0) << "it begins within half a turn";
+  reference.lose();
+  reference.drift(-134.0);
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 150.0);
+  reference.drift(-124.0);
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 160.0);
+  reference.lose();
+  reference.drift(300.0);
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 160.0) << "another leap";
+  EXPECT_FALSE(reference.known());
+  reference.update(14'560.0);
+  EXPECT_TRUE(reference.known());
+  EXPECT_DOUBLE_EQ(reference.totalAngleDeg(), 160.0);
+  AngleReference counted({});
+  counted.update(5.0);
+  counted.lose();
+  counted.drift(300.0);
+  counted.drift(310.0);
+  counted.update(1'742.0);
+  EXPECT_DOUBLE_EQ(counted.totalAngleDeg(), 10.0) << "that of the turns neither";
+}
+
 TEST(AngleReference, OneThatIsForgottenStaysUnknownUntilItIsSetThoughItsEncoderIsAbsolute) {
   AngleReference reference({.absolute = true});
   reference.update(30.0);

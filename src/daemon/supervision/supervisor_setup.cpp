@@ -20,7 +20,11 @@ Refusal Supervisor::mayConfigure(std::size_t motor) const noexcept {
     case MotorStatus::kReady:
     case MotorStatus::kFault: break;
   }
-  return axes_[motor].fallbackActs() ? Refusal::kStillActs : Refusal::kNone;
+  if (axes_[motor].fallbackActs()) return Refusal::kStillActs;
+  // It may be silent while it stores: a loss that its group would stop for is not seen then.
+  const auto* group = groupOf(motor);
+  const bool needed = group != nullptr && group->required.test(motor);
+  return needed && (group->on(axes_) | group->held(axes_)).any() ? Refusal::kOthersOn : Refusal::kNone;
 }
 
 void Supervisor::configure(const Order& order, const Tick& tick) noexcept {
@@ -36,6 +40,8 @@ void Supervisor::configure(const Order& order, const Tick& tick) noexcept {
   }
   result.motors[motor] = mayConfigure(motor);
   if (result.motors[motor] != Refusal::kNone) {
+    const auto* group = groupOf(motor);
+    if (group != nullptr) result.in_the_way = group->on(axes_) | group->held(axes_);
     link_.results.push(result);
     return;
   }

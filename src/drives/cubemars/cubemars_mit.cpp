@@ -11,6 +11,10 @@
 namespace rc10 {
 namespace {
 
+[[nodiscard]] SpringLaw resistance(double gain) noexcept {
+  return {.damping_nms_per_rad = gain, .resists = true};
+}
+
 using cubemars::MitOrder;
 using cubemars::ServoCommand;
 
@@ -193,7 +197,7 @@ void CubemarsMit::update(const Tick& tick) noexcept {
   if (coasts || silent(tick) || !std::isfinite(target.value)) {
     release();
   } else {
-    send(damps ? velocityLaw(0.0, 0.0, kMitDampShare * velocity_gain_) : lawOf(target, tick.now));
+    send(damps ? resistance(kMitDampShare * velocity_gain_) : lawOf(target, tick.now));
   }
 }
 
@@ -230,8 +234,7 @@ SpringLaw CubemarsMit::angleLaw(const Target& target, double stiffness, double d
   if (!inRange()) {
     // The command's position field ends there; the drive's response beyond it is unknown.
     limits_ |= kLimitAngle;
-    return velocityLaw(0.0, 0.0,
-                       std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));
+    return resistance(std::max(std::min(damping, CubemarsRanges::kDampingNmsPerRad), velocity_gain_));
   }
   const double reach_rad = reach_.step(springReach(stiffness), position_rad_);
   const double wanted_rad = drivePositionFor(target.value) * kRadPerDeg;
@@ -268,7 +271,7 @@ SpringLaw CubemarsMit::lawOf(const Target& target, MonotonicTime now) noexcept {
       return angleLaw(target, static_cast<double>(target.stiffness_nm_per_rad) / (ratio * ratio),
                       static_cast<double>(target.damping_nms_per_rad) / (ratio * ratio));
     }
-    case ControlMode::kBrake: return velocityLaw(0.0, 0.0, velocity_gain_);
+    case ControlMode::kBrake: return resistance(velocity_gain_);
     case ControlMode::kCoast:
     case ControlMode::kAngle:  // wanted() has made it a total angle
     case ControlMode::kVoltage:

@@ -122,9 +122,8 @@ void Damiao_Motor::takeState(const damiao::State& state, MonotonicTime received)
   // The hotter of power stage and winding.
   feedback_.temperature_c =
       std::max(damiao::temperature(state.drive_temperature), damiao::temperature(state.winding_temperature));
-  acceptSample(received, position_.rad() / kRadPerDeg);
   // Not even an absolute angle is known before the wraps are.
-  if (!position_.known()) feedback_.zeroed = feedback_.turn_unclear = false;
+  acceptSample(received, position_.rad() / kRadPerDeg, position_.known());
 }
 
 void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
@@ -202,11 +201,8 @@ void Damiao_Motor::release() noexcept {
 }
 
 SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
+  if (ordered() == FrameKind::kDamp) return {.damping_nms_per_rad = damp_nms_per_rad_, .resists = true};
   SpringLaw law;
-  if (ordered() == FrameKind::kDamp) {
-    law.damping_nms_per_rad = damp_nms_per_rad_;
-    return law;
-  }
   // Gains are at the output shaft; an own gear behind the drive counts squared.
   const double gear = toDrive(1.0) * toDrive(1.0);
   const double ff_nm = torqueToDrive(static_cast<double>(target.torque_ff_nm));
@@ -215,7 +211,10 @@ SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
     case ControlMode::kCurrent:
       law.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA())) + ff_nm;
       break;
-    case ControlMode::kBrake: law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear; break;
+    case ControlMode::kBrake:
+      law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
+      law.resists = true;
+      break;
     case ControlMode::kVelocity:
       law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
       law.velocity_rad_s = toDrive(target.value) * kRadPerSPerRpm;

@@ -147,9 +147,8 @@ void DJI_Motor::forgetReference() noexcept {
 }
 
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
-  // Without a travel its turn is that of before: a hold may go on.
-  const bool limited = std::isfinite(travel_.min_deg) && std::isfinite(travel_.max_deg);
-  const bool would_jump = isAngle(followed) && (limited || ordered() != FrameKind::kHold);
+  // Without a travel its turn is that of before: no jump.
+  const bool would_jump = isAngle(followed) && travel_.bothEnds();
   if (!absolute_ || forgotten_ || !encoder_.referenceLost() || would_jump) return;
   findTurn(feedback_.total_angle_deg, feedback_.total_angle_deg);
   encoder_.acknowledgeLoss();

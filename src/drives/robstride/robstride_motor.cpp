@@ -186,8 +186,6 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
   acceptSample(received, position_rad_ * kDegPerRad);
   // acceptSample() finds an absolute reference again, even at the end of the scale.
   if (feedback_.angle_at_end) loseReference();
-  // Its targets would not be followed.
-  if (angles_in_doubt_ && obeying()) feedback_.zeroed = false;
   enabling_.onFeedback(seen);
 }
 
@@ -215,6 +213,7 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
 }
 
 bool RobStride_Motor::setZero(double angle_deg) noexcept {
+  if (feedback_.angle_at_end) return false;
   const double reach_rad = springReachRad(scaleEndRad(), limitNm(), angle_stiffness_);
   const double here_rad = position_rad_ + scale_offset_rad_;
   const bool reaches =

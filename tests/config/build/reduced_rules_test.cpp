@@ -138,16 +138,10 @@ TEST(ReducedRules, EveryLoopThatObeysTheDrivesMaximumIsAModeWithALoop) {
   int judged = 0;
   for (const auto& entry : motorFamilies()) {
     for (const auto& model : entry.family->models()) {
-      for (const auto& key : entry.family->keys()) {
-        const std::size_t values = key.kind == OwnKey::Kind::kFlag ? 2 : key.choices.size();
-        for (std::size_t value = 0; value < values; ++value) {
-          OwnValues own = ownDefaults(*entry.family);
-          own.set(key.name, static_cast<double>(value));
-          const auto traits = entry.family->traits(model, own);
-          EXPECT_EQ((traits.own_loops & traits.modes & kLoops).bits(), traits.own_loops.bits())
-              << model << ' ' << key.name << ' ' << value;
-          judged += traits.own_loops.bits() != 0 ? 1 : 0;
-        }
+      for (const auto& settings : variants(*entry.family, model, 1)) {
+        const auto traits = entry.family->traits(model, settings.own);
+        EXPECT_EQ((traits.own_loops & traits.modes & kLoops).bits(), traits.own_loops.bits()) << model;
+        judged += traits.own_loops.bits() != 0 ? 1 : 0;
       }
     }
   }

@@ -15,6 +15,7 @@ struct AbsoluteEncoder {
   const char* name;
   const char* motor;
   const char* bus = "";
+  double parked_deg = 0.0;  ///< Beside that of the robot.
 };
 
 inline void PrintTo(const AbsoluteEncoder& subject, std::ostream* out) { *out << subject.name; }
@@ -46,8 +47,8 @@ inline RobotConfig robotOfArm(const AbsoluteEncoder& subject, const std::string&
   auto outcome = parseRobotConfig(std::string{"robot: turn\nrealtime: preferred\nbuses:\n  - name: bench\n"
                                               "    type: sim\n    "} +
                                       subject.bus + "motors:\n      - {name: arm, " + subject.motor + keys +
-                                      ", simulated: {initial_angle_deg: " + std::to_string(parked_deg) +
-                                      "}}\n" + modules,
+                                      ", simulated: {initial_angle_deg: " +
+                                      std::to_string(subject.parked_deg + parked_deg) + "}}\n" + modules,
                                   "turn.yaml");
   EXPECT_TRUE(outcome.config) << outcome.errorText();
   return outcome.config.value_or(twoWheelsAndYaw());

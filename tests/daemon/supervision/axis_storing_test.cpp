@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "config/load_config.hpp"
 #include "config/motor_families.hpp"
 #include "daemon/supervision/one_motor.hpp"
 #include "motor/drive_configuring.hpp"
@@ -98,6 +100,44 @@ TEST(StoringDrives, AreThoseOfEachFamilyWithSettings) {
     families.emplace(outcome.config->buses[0].motors[0].family->name());
   }
   EXPECT_EQ(families, (std::set<std::string>{"Damiao", "MyActuator", "RobStride"}));
+}
+
+// While it stores its silence is no loss, so nothing of its group may rely on it.
+TEST(StoringDrives, OfAGroupAreConfiguredOnlyWhileTheOthersRestAndKeepThemFromBeingEnabled) {
+  const auto outcome = parseRobotConfig(
+      "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
+      "      - {name: arm, model: DM4310, id: 1, master_id: 17}\n"
+      "      - {name: wheel, model: M3508, id: 2, on_disable: hold}\n"
+      "groups: [{name: both, motors: [arm, wheel]}]\n",
+      "lifter.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot(*outcome.config);
+  robot.run(2000);
+  const auto wheel = MotorSet{}.set(1);
+  Order order;
+  order.operation = Operation::kConfigure;
+  order.motors.set(0);
+  order.drive.values[0] = {0, 1.0};
+  order.drive.count = 1;
+  const auto configure = [&] {
+    ++order.id;
+    EXPECT_TRUE(robot.exchange().orders.push(order));
+    robot.run(2);
+    OrderResult result;
+    return robot.exchange().results.pop(result) ? std::optional{result} : std::nullopt;
+  };
+  ASSERT_EQ(robot.orderFor(wheel, Operation::kEnable).motors[1], Refusal::kNone);
+  for (const bool on : {true, false}) {
+    if (!on) robot.orderFor(wheel, Operation::kDisable);
+    ASSERT_EQ(robot.motor(1).acting, on ? Acting::kNothing : Acting::kHold);
+    const auto refused = configure();
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->motors[0], Refusal::kOthersOn);
+    EXPECT_EQ(refused->in_the_way, wheel);
+  }
+  robot.orderFor(wheel, Operation::kDisable);
+  EXPECT_FALSE(configure()) << "it has begun";
+  EXPECT_EQ(robot.orderFor(wheel, Operation::kEnable).motors[1], Refusal::kConfiguring);
 }
 
 TEST_P(StoringDriveTest, StaysReadyWithItsReference) {

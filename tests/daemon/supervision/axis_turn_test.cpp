@@ -14,10 +14,10 @@
 namespace rc10::test::axis_turn_test {
 namespace {
 
+constexpr std::size_t kArm = 0;
+
 class TurnTest : public ::testing::TestWithParam<AbsoluteEncoder> {
  protected:
-  static constexpr std::size_t kArm = 0;
-
   /// Until the drive is enabled, or refuses for its turn.
   static Refusal enable(VirtualRobot& robot) {
     for (int i = 0; i < 4000 && robot.motor(kArm).status != MotorStatus::kReady; ++i) robot.run(1);
@@ -97,6 +97,39 @@ TEST_P(TurnTest, IsInTheFrameOfItsLastZeroAfterItsDriveWasRestarted) {
 
 INSTANTIATE_TEST_SUITE_P(All, TurnTest, ::testing::ValuesIn(kAbsoluteEncoders),
                          [](const auto& each) { return std::string{each.param.name}; });
+
+// Its feedback wraps after 1432 deg, which is no whole number of turns.
+TEST(TurnOfAWheel, IsFoundOnceTheWrapsOfItsDriveAreKnown) {
+  VirtualRobot robot(robotOfArm({"", "model: DM4310, id: 1, master_id: 17"}, "", 40.0 * 360.0 + 150.0));
+  for (int i = 0; i < 4000 && !robot.motor(kArm).feedback.zeroed; ++i) robot.run(1);
+  EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
+  EXPECT_NEAR(robot.motor(kArm).feedback.total_angle_deg, 150.0, 0.5);
+}
+
+// After a gap its drive can be told no place until it is enabled anew, but the angle is known.
+TEST(TurnOfAnArm, KeepsItsSoftLimitsWhereOnlyTheCountOfTheDriveIsInDoubt) {
+  for (const char* control : {"operation", "velocity"}) {
+    VirtualRobot robot(robotOfArm(
+        {"", "model: RS00, id: 3"},
+        std::string{", angle_min_deg: -90, angle_max_deg: 200, feedback_timeout_ms: 400, control: "} +
+            control,
+        10.0));
+    for (int i = 0; i < 4000 && robot.motor(kArm).status != MotorStatus::kReady; ++i) robot.run(1);
+    ASSERT_EQ(robot.order(Operation::kEnable).motors[kArm], Refusal::kNone);
+    robot.run(500);
+    const Target up{.mode = ControlMode::kVelocity, .value = 20.0};
+    robot.hold(kArm, up, 300);
+    robot.simBus().silence(0, true);
+    robot.hold(kArm, up, 230);
+    robot.simBus().silence(0, false);
+    robot.hold(kArm, up, 20);
+    ASSERT_FALSE(robot.robot().motors()[kArm].motor->placeKnown()) << control;
+    ASSERT_EQ(robot.motor(kArm).status, MotorStatus::kActive) << control;
+    robot.hold(kArm, up, 4000);
+    EXPECT_TRUE(robot.motor(kArm).feedback.zeroed) << control;
+    EXPECT_NEAR(robot.simBus().drive(0).physics().outputAngleDeg(), 200.0, 5.0) << control;
+  }
+}
 
 TEST(TurnOfAnArm, IsNotWrongByOneAndItsTargetLeadsNowhereElse) {
   VirtualRobot robot(
