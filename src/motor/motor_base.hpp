@@ -31,7 +31,9 @@ struct MotorFeedback {
 #define RC10_FIELD(type, name, initial) type name = std::numeric_limits<type>::quiet_NaN();
   RC10_FEEDBACK_READINGS(RC10_FIELD)
 #undef RC10_FIELD
-  bool zeroed = false;        ///< The angle has a known reference.
+  bool zeroed = false;  ///< The angle has a known reference.
+  bool bounds_only =
+      false;  ///< It is known, but its drive can be told no place: soft limits alone act by it.
   std::uint64_t losses = 0;   ///< Losses of a known reference, those that ended at once included.
   bool turn_unclear = false;  ///< Absolute, but its travel does not say on which turn it stands.
   bool angle_at_end = false;  ///< The drive's field ends here: the shaft may turn on, and nobody sees it.
@@ -53,8 +55,6 @@ class Motor_Base : public FrameListener {
   bool setTarget(const Target& target) noexcept;
   /// Whether setTarget() takes it.
   [[nodiscard]] bool acceptsTarget(const Target& target) const noexcept;
-  /// The drive can be told a place. False while its own count is in doubt, though the angle may be known.
-  [[nodiscard]] virtual bool placeKnown() const noexcept { return true; }
   bool setTargetCurrent(Amperes current) noexcept;
   bool setTargetRPM(Rpm velocity) noexcept;
   bool setTargetAngle(Degrees angle) noexcept;

@@ -68,10 +68,13 @@ void SoloMotor::acceptSample(MonotonicTime received, double drive_position_deg, 
 
 void SoloMotor::takeAngle(double drive_position_deg, bool tells_angle) noexcept {
   // An angle that is followed must not leap to the turn of its travel: it stays lost.
+  const bool was_known = reference_.known();
   if (tells_angle)
     reference_.update(toOutput(drive_position_deg), !obeying(), !obeying() || !follows_angle_);
   else
     reference_.drift(toOutput(drive_position_deg));
+  // A place that is held was told in the angle of before.
+  if (!was_known && reference_.known()) holding_ = false;
   feedback_.total_angle_deg = reference_.totalAngleDeg();
   feedback_.angle_deg = wrapDegreesToFloat(feedback_.total_angle_deg);
   feedback_.zeroed = reference_.known();

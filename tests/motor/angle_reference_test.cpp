@@ -120,6 +120,8 @@ TEST(AngleReference, ACountWhoseTurnsAreUnknownTellsNoAngleAndItsLeapsAreNoWay) 
   counted.lose();
   counted.drift(300.0);
   counted.drift(310.0);
+  counted.lose();  // it counts from elsewhere
+  counted.drift(1'742.0);
   counted.update(1'742.0);
   EXPECT_DOUBLE_EQ(counted.totalAngleDeg(), 10.0) << "that of the turns neither";
 }

@@ -184,16 +184,20 @@ TEST(RobStrideMotor, AtTheEndOfItsScaleAPlaceIsNotToldAndBackWithinItIs) {
   EXPECT_NEAR(place.motor.feedback().total_angle_deg, moved_deg, 0.1) << "what was cut off is made up for";
 }
 
-TEST(RobStrideMotor, AnAbsoluteAngleIsKnownThoughItsDriveCanBeToldNoPlaceWhileItObeys) {
+TEST(RobStrideMotor, AnAbsoluteAngleInDoubtIsNoReferenceWhileItObeysButBoundsIt) {
   auto settings = controlled("operation");
   Bench bench(settings);
   bench.run(1.0);
   bench.tick(FrameKind::kIdle);
   bench.runAfter(milliseconds{300}, 1.0);
   bench.run(1.0);
-  EXPECT_FALSE(bench.motor.placeKnown()) << "its targets would only be damped";
-  EXPECT_TRUE(bench.motor.feedback().zeroed) << "soft limits hold";
+  EXPECT_FALSE(bench.motor.feedback().zeroed) << "its targets would only be damped";
+  EXPECT_TRUE(bench.motor.feedback().bounds_only) << "soft limits hold";
   EXPECT_EQ(bench.motor.feedback().losses, 1U);
+  bench.tick(FrameKind::kPoll);
+  bench.run(1.0);
+  EXPECT_TRUE(bench.motor.feedback().zeroed);
+  EXPECT_FALSE(bench.motor.feedback().bounds_only);
 }
 
 TEST(RobStrideMotor, ALongSilenceLosesTheReferenceOfACyberGear) {

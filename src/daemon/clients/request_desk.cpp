@@ -87,8 +87,9 @@ constexpr std::string_view kAngle = "angle_deg";
     case Refusal::kOutOfReach:
       return fmt::format(
           "with this zero part of its travel ({}) would lie beyond the positions that its drive can be told: "
-          "turn it back towards the drive's own 0, near which most drives are when they are switched on; or "
-          "the drive has not told its count of turns yet: try again",
+          "turn it back towards the drive's own 0, near which most drives are when they are switched on (at "
+          "the end of its "
+          "scale there is no zero at all); or the drive has not told its count of turns yet: try again",
           travelText(motor.travel));
     case Refusal::kScanning:
     case Refusal::kBusHeld:

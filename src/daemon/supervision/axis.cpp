@@ -455,7 +455,7 @@ std::optional<SkipReason> Axis::whyNotNow(const Target& target) const noexcept {
   if (status_ != MotorStatus::kActive) return SkipReason::kNotActive;
   if (needsReference(target.mode)) {
     if (!(std::fabs(target.value) <= kFarthestAngleDeg)) return SkipReason::kTooFar;
-    if (!motor_.feedback().zeroed || !motor_.placeKnown()) return SkipReason::kNoReference;
+    if (!motor_.feedback().zeroed) return SkipReason::kNoReference;
     const bool first = !actsByPlace(motor_.target());
     if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
   }

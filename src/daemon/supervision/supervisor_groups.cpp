@@ -125,6 +125,7 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
     const bool turns = status != MotorStatus::kOffline && !axes_[motor].standsStill();
     if (waited_for || turns) group.moved = tick.now;
   }
+  if (configuring_ && group.required.test(configuring_->motor)) group.moved = tick.now;
   if (tick.now - group.moved < kAtRest) return;
   // Somebody may have enabled them meanwhile. A group that acts together and was not whole is refused.
   const auto asked = std::exchange(group.rearm, {}) & ~group.on(axes_);

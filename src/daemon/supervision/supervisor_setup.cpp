@@ -41,7 +41,8 @@ void Supervisor::configure(const Order& order, const Tick& tick) noexcept {
   result.motors[motor] = mayConfigure(motor);
   if (result.motors[motor] != Refusal::kNone) {
     const auto* group = groupOf(motor);
-    if (group != nullptr) result.in_the_way = group->on(axes_) | group->held(axes_);
+    if (group != nullptr && result.motors[motor] == Refusal::kOthersOn)
+      result.in_the_way = group->on(axes_) | group->held(axes_);
     link_.results.push(result);
     return;
   }

@@ -139,6 +139,7 @@ void Damiao_Motor::takeReply(const damiao::RegisterReply& reply) noexcept {
   if (position_.take(damiao::floatOf(reply.value)) == DamiaoPosition::Wrap::kOther) {
     speed_.restart();
     loseReference();
+    takeAngle(position_.rad() / kRadPerDeg, false);  // turns that are known now are no way
   }
   if (position_.known()) takeAngle(position_.rad() / kRadPerDeg);
   if (enabling()) enabling_.onPosition(position_.known());

@@ -186,6 +186,9 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
   acceptSample(received, position_rad_ * kDegPerRad);
   // acceptSample() finds an absolute reference again, even at the end of the scale.
   if (feedback_.angle_at_end) loseReference();
+  // followOperation() and followAngle() follow no place until it is enabled anew.
+  feedback_.bounds_only = feedback_.zeroed && angles_in_doubt_ && obeying();
+  if (feedback_.bounds_only) feedback_.zeroed = false;
   enabling_.onFeedback(seen);
 }
 

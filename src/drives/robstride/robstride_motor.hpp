@@ -43,9 +43,6 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] SequenceProgress sequenceProgress() const noexcept override;
   [[nodiscard]] DriveComplaint complaint() const noexcept override;
   void clearComplaint() noexcept override;
-  [[nodiscard]] bool placeKnown() const noexcept override {
-    return !angles_in_doubt_ && !feedback_.angle_at_end;
-  }
   bool setZero(double angle_deg) noexcept override;
   void dropWindup(float least_rpm) noexcept override;
   [[nodiscard]] DriveConfiguring* driveConfiguring() noexcept override { return &configuring_; }
@@ -66,6 +63,8 @@ class RobStride_Motor : public SoloMotor {
   [[nodiscard]] bool wraps() const noexcept;
   [[nodiscard]] double scaleEndRad() const noexcept;  ///< As far as operation mode can be told to go.
   [[nodiscard]] bool positionOnScale() const noexcept;
+  /// A place would be one of the drive's count, which nobody knows.
+  [[nodiscard]] bool placeUnknown() const noexcept { return angles_in_doubt_ || feedback_.angle_at_end; }
   [[nodiscard]] double positionRadFor(double total_angle_deg) const noexcept;
   /// Total angle that a brake keeps in this tick, in deg.
   [[nodiscard]] double brakeDeg() noexcept;

@@ -91,7 +91,7 @@ void RobStride_Motor::followOperation(const Target& target, MonotonicTime now) n
   // Without feedback nothing that depends on where it is can be kept within the limits.
   if (!knows_itself && (wanted.stiffness_nm_per_rad > 0.0 || wanted.damping_nms_per_rad > 0.0)) wanted = {};
   const bool follows_angle = wanted.stiffness_nm_per_rad > 0.0;
-  if (follows_angle && (!placeKnown() || !positionOnScale())) {
+  if (follows_angle && (placeUnknown() || !positionOnScale())) {
     limits_ |= kLimitAngle;
     wanted = dampOnly(wanted, angle_damping_);
   }
@@ -182,7 +182,7 @@ void RobStride_Motor::followAngle(const Target& target) noexcept {
   if (target.mode == ControlMode::kBrake) wanted_deg = brakeDeg();
   const double here_rad = positionRadFor(feedback_.total_angle_deg);
   // From beyond what it can be told every place lies far back.
-  const bool unreachable = !placeKnown() || !(std::abs(here_rad) <= kFarthestReferenceRad);
+  const bool unreachable = placeUnknown() || !(std::abs(here_rad) <= kFarthestReferenceRad);
   if (follows && unreachable) limits_ |= kLimitAngle;
   const double position_rad = positionRadFor(wanted_deg);
   const double reachable = finiteOr0(std::clamp(position_rad, -kFarthestReferenceRad, kFarthestReferenceRad));

@@ -118,7 +118,7 @@ class TargetShaper {
     double high_deg = 0.0;
   };
   [[nodiscard]] bool bounded(const MotorFeedback& feedback) const noexcept {
-    return soft_limits_ && feedback.zeroed;
+    return soft_limits_ && (feedback.zeroed || feedback.bounds_only);
   }
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
   [[nodiscard]] bool reduced() const noexcept { return std::isfinite(ceiling_rpm_); }

@@ -123,10 +123,9 @@ TEST(TurnOfAnArm, KeepsItsSoftLimitsWhereOnlyTheCountOfTheDriveIsInDoubt) {
     robot.hold(kArm, up, 230);
     robot.simBus().silence(0, false);
     robot.hold(kArm, up, 20);
-    ASSERT_FALSE(robot.robot().motors()[kArm].motor->placeKnown()) << control;
     ASSERT_EQ(robot.motor(kArm).status, MotorStatus::kActive) << control;
     robot.hold(kArm, up, 4000);
-    EXPECT_TRUE(robot.motor(kArm).feedback.zeroed) << control;
+    EXPECT_FALSE(robot.motor(kArm).feedback.zeroed) << control;
     EXPECT_NEAR(robot.simBus().drive(0).physics().outputAngleDeg(), 200.0, 5.0) << control;
   }
 }
