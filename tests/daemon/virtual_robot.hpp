@@ -3,8 +3,10 @@
 #include <linux/can.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <bitset>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -152,6 +154,18 @@ class VirtualRobot {
     command.count = 1;
     command.setpoints[0] = {static_cast<std::uint16_t>(motor), target};
     ASSERT_TRUE(exchange_.commands.push(command));
+  }
+
+  /// Inputs of the first module, the others not given.
+  void giveInputs(std::initializer_list<double> values, Duration validity) {
+    SignalMessage message;
+    message.client = "program";
+    message.session = 7;
+    message.received = now_;
+    message.deadline = now_ + validity;
+    message.values.fill(kNoSignal);
+    std::copy(values.begin(), values.end(), message.values.begin());
+    ASSERT_TRUE(exchange_.signals.push(message));
   }
 
   /// As another client than command() is.

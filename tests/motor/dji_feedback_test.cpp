@@ -251,32 +251,21 @@ TEST(DjiReference, AfterALongGapAnAbsoluteEncoderIsOnTheTurnNearestToWhereItWas)
   EXPECT_NEAR(motor.getTotalAngle().value, 2 * 360.0 + 45.0, 1e-6);
 }
 
-TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlled) {
-  DJI_Motor motor(djiConfig(kGM6020));
-  DjiFeeder feeder(motor);
-  feeder.feedAndTick({.position = 0});
-  ASSERT_TRUE(motor.setZero(720.0));
-  motor.order(FrameKind::kCommand);
-  ASSERT_TRUE(motor.setTargetTotalAngle(Degrees{720.0}));
-  feeder.feedAndTick({.position = 0});
-  (void)feeder.feed({.position = 91}, milliseconds{60});
-  feeder.tick();
-  EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01);
-  EXPECT_TRUE(motor.feedback().zeroed) << "found again without a leap";
-  EXPECT_EQ(motor.feedback().losses, 1U) << "but it is told: the supervisor ends the target";
-}
-
-TEST(DjiReference, AHoldKeepsAnAbsoluteEncoderFromNoReference) {
-  DJI_Motor motor(djiConfig(kGM6020));
-  DjiFeeder feeder(motor);
-  feeder.feedAndTick({.position = 0});
-  ASSERT_TRUE(motor.setZero(720.0));
-  motor.order(FrameKind::kHold);
-  feeder.feedAndTick({.position = 0});
-  (void)feeder.feed({.position = 91}, milliseconds{60});
-  feeder.tick();
-  EXPECT_TRUE(motor.feedback().zeroed);
-  EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01);
+TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlledOrHeld) {
+  for (const auto kind : {FrameKind::kCommand, FrameKind::kHold}) {
+    DJI_Motor motor(djiConfig(kGM6020));
+    DjiFeeder feeder(motor);
+    feeder.feedAndTick({.position = 0});
+    ASSERT_TRUE(motor.setZero(720.0));
+    motor.order(kind);
+    ASSERT_TRUE(motor.setTargetTotalAngle(Degrees{720.0}));
+    feeder.feedAndTick({.position = 0});
+    (void)feeder.feed({.position = 91}, milliseconds{60});
+    feeder.tick();
+    EXPECT_NEAR(motor.getTotalAngle().value, 724.0, 0.01);
+    EXPECT_TRUE(motor.feedback().zeroed) << "found again without a leap";
+    EXPECT_EQ(motor.feedback().losses, 1U) << "but it is told: the supervisor ends the target";
+  }
 }
 
 TEST(DjiReference, WithATravelAnAbsoluteEncoderIsOnItsTurnAgain) {

@@ -83,7 +83,7 @@ struct SignalMessage {
   link::Name client;
   std::uint64_t session = 0;
   std::int32_t priority = 0;
-  MonotonicTime received;  ///< As of a command.
+  MonotonicTime received;  ///< As Command::received.
   MonotonicTime deadline;
   std::uint16_t module = 0;
   std::array<double, kMaxSignals> values{};  ///< By input; NaN: not given.

@@ -80,14 +80,7 @@ class LostAngle : public ::testing::TestWithParam<std::tuple<AbsoluteEncoder, Lo
   void stream(double deg, std::uint64_t periods = 1) {
     asked_deg_ = deg;
     if (joint_) {
-      SignalMessage message;
-      message.client = "program";
-      message.session = 7;
-      message.received = robot_->now();
-      message.deadline = robot_->now() + 500ms;
-      message.values.fill(kNoSignal);
-      message.values[0] = deg;
-      ASSERT_TRUE(robot_->exchange().signals.push(message));
+      robot_->giveInputs({deg}, 500ms);
     } else {
       robot_->command(kArm, {.mode = ControlMode::kTotalAngle, .value = deg}, 500ms);
     }
@@ -122,6 +115,11 @@ class LostAngle : public ::testing::TestWithParam<std::tuple<AbsoluteEncoder, Lo
     EXPECT_NEAR(totalDeg(), shaftDeg(), 1.0);
     EXPECT_NEAR(shaftDeg(), kFarDeg, 5.0) << "it is followed again";
   }
+  void loseUnder(FallbackAction on_timeout, bool joint = false) {
+    start(on_timeout, joint);
+    lose();
+    goOn();
+  }
 
   static const AbsoluteEncoder& subject() { return std::get<AbsoluteEncoder>(GetParam()); }
   static bool reversed() {
@@ -147,11 +145,7 @@ class LostWhenDamped : public LostAngle {};
 class LostUnderAJoint : public LostAngle {};
 class LostInMotion : public LostAngle {};
 
-TEST_P(LostAngle, TurnsNoWholeTurnsUnderAStreamThatGoesOn) {
-  start(FallbackAction::kCoast);
-  lose();
-  goOn();
-}
+TEST_P(LostAngle, TurnsNoWholeTurnsUnderAStreamThatGoesOn) { loseUnder(FallbackAction::kCoast); }
 
 // Its wraps are asked for and known some ticks after the hold has begun.
 TEST_P(LostInMotion, HoldsWhereTheGapHasLeftIt) {
@@ -166,23 +160,11 @@ TEST_P(LostInMotion, HoldsWhereTheGapHasLeftIt) {
   EXPECT_GT(shaftDeg(), kFarDeg + 60.0 * 6.0 * 0.3) << "not pulled back by the way of the gap";
 }
 
-TEST_P(LostWhenHeld, TurnsNoWholeTurnsAfterIt) {
-  start(FallbackAction::kHold);
-  lose();
-  goOn();
-}
+TEST_P(LostWhenHeld, TurnsNoWholeTurnsAfterIt) { loseUnder(FallbackAction::kHold); }
 
-TEST_P(LostWhenDamped, TurnsNoWholeTurnsAfterIt) {
-  start(FallbackAction::kDamp);
-  lose();
-  goOn();
-}
+TEST_P(LostWhenDamped, TurnsNoWholeTurnsAfterIt) { loseUnder(FallbackAction::kDamp); }
 
-TEST_P(LostUnderAJoint, TurnsNoWholeTurnsThatItsProfileWouldLead) {
-  start(FallbackAction::kCoast, true);
-  lose();
-  goOn();
-}
+TEST_P(LostUnderAJoint, TurnsNoWholeTurnsThatItsProfileWouldLead) { loseUnder(FallbackAction::kCoast, true); }
 
 constexpr AbsoluteEncoder kManyWrapsAway[] = {
     {"DamiaoFar", "model: DM4310, id: 1, master_id: 17, control: position_velocity", "", 47 * 360.0}};

@@ -77,17 +77,7 @@ class JointOfARobot : public ::testing::Test {
     asked = {angle_deg, home};
     sends = true;
   }
-  void send() {
-    SignalMessage message;
-    message.client = "program";
-    message.session = 7;
-    message.received = robot->now();
-    message.deadline = robot->now() + 50ms;
-    message.values.fill(kNoSignal);
-    message.values[0] = asked[0];
-    message.values[1] = asked[1];
-    ASSERT_TRUE(robot->exchange().signals.push(message));
-  }
+  void send() { robot->giveInputs({asked[0], asked[1]}, 50ms); }
   /// Until it is homed, or has failed.
   void home(int ticks = 20'000) {
     ask(kNoSignal, 1.0);

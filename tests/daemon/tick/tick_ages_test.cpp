@@ -95,16 +95,7 @@ TEST(TickAges, OfMessagesToAModuleAreCountedWhileAnotherBusIsHeldAndNotFalselyAf
   ASSERT_TRUE(outcome.config) << outcome.errorText();
   VirtualRobot robot{*outcome.config};
   const auto& ages = robot.exchange().ages;
-  const auto ask = [&robot] {
-    SignalMessage message;
-    message.client = "panel";
-    message.session = 7;
-    message.received = robot.now();
-    message.deadline = robot.now() + 1s;
-    message.values.fill(kNoSignal);
-    message.values[0] = 5.0;
-    ASSERT_TRUE(robot.exchange().signals.push(message));
-  };
+  const auto ask = [&robot] { robot.giveInputs({5.0}, 1s); };
   robot.run(10);
   robot.inboxes()[1].link = CanLinkState::kDown;
   robot.run(10);
