@@ -29,7 +29,7 @@ enum class EventCode : std::int32_t {
   kMotorStatus =
       100,  ///< value: new MotorStatus, extra: ExtraPair of the old one and the StopCause; `client`: by whom
   kCommandTimeout = 101,   ///< no valid command any more; value: the FallbackAction
-  kReferenceLost = 102,    ///< the multi-turn angle is unknown
+  kReferenceLost = 102,    ///< the angle has no reference any more
   kSetpointSkipped = 103,  ///< value: the SkipReason, extra: ExtraPair of the mode and the MotorStatus
   kNotOwner = 104,         ///< a command refused: a motor is held by another client (`client`: who asked)
   kMotorFault = 105,       ///< value: the FaultCode; extra: the drive's own code

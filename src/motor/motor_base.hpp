@@ -80,9 +80,8 @@ class Motor_Base : public FrameListener {
   [[nodiscard]] FrameKind ordered() const noexcept { return ordered_; }
 
   /// Before a target of this mode is shaped and followed: a motor whose encoder is absolute, and which may
-  /// have lost turns, knows its angle again. Not while an angle is followed: the turn of its travel would be
-  /// a jump.
-  /// Asked for only while the angle has no known reference.
+  /// have lost turns, knows its angle again. With a travel not while an angle is followed: its turn would be
+  /// a jump. Asked for only while the angle has no known reference.
   virtual void restoreReference(ControlMode) noexcept {}
 
   /// Scales the effort limit from this tick on, by 0 (nothing) to 1 (all): a hot motor gets less.

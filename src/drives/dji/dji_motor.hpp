@@ -20,8 +20,8 @@ namespace rc10 {
 /// Reference of the angle. M3508 and M2006 count from their first sample, with zeroed = false until
 /// setZero(); a gap too long to know the turns makes that so again. GM6020 without a gear knows its
 /// angle: zeroed from the first sample, total angle then in [-180, 180). After a gap too long its
-/// angle stays right while the number of turns is in doubt: zeroed = false, and without a jump, for
-/// as long as an angle is being controlled; then its turn is that of its travel, without one that of before.
+/// turns are in doubt: without both limits it is at once on the turn nearest to where it was; with both
+/// zeroed = false, without a jump, for as long as an angle is being controlled, then on that of its travel.
 ///
 /// Loops advance on new samples only. After 100 ms without one they stop, and their effort is 0.
 class DJI_Motor : public Motor_Base {
