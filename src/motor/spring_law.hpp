@@ -42,12 +42,16 @@ enum class SpringYield : std::uint8_t {
 /// Torque that the drive makes of a law. A part without a gain is 0.
 [[nodiscard]] double torqueNm(const SpringLaw& law, const SpringState& at) noexcept;
 
+/// Law of damp and brake.
+[[nodiscard]] constexpr SpringLaw resistance(double damping_nms_per_rad) noexcept {
+  return {.damping_nms_per_rad = damping_nms_per_rad, .resists = true};
+}
+
 /// The law for where no angle may be followed: it opposes the shaft with the greater damping, and pushes
 /// nothing.
 [[nodiscard]] constexpr SpringLaw dampOnly(const SpringLaw& law, double damping_nms_per_rad) noexcept {
-  return {.damping_nms_per_rad =
-              law.damping_nms_per_rad > damping_nms_per_rad ? law.damping_nms_per_rad : damping_nms_per_rad,
-          .resists = true};
+  return resistance(law.damping_nms_per_rad > damping_nms_per_rad ? law.damping_nms_per_rad
+                                                                  : damping_nms_per_rad);
 }
 
 /// A field that rounds down would leave a fast shaft without a brake: one step of it, where that is nearer

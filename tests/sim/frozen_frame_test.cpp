@@ -6,7 +6,6 @@
 #include <memory>
 #include <ostream>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,11 +14,9 @@
 #include <gtest/gtest.h>
 
 #include "app/units.hpp"
-#include "bus/fdcan_bus.hpp"
 #include "drives/families.hpp"
+#include "sim/built_motor.hpp"
 #include "sim/solo_rig.hpp"
-#include "support/family_of.hpp"
-#include "support/own_defaults.hpp"
 
 namespace rc10::test::frozen_frame_test {
 namespace {
@@ -34,7 +31,7 @@ struct Subject {
   double fast_rpm;      ///< Full damping would be more than the limit there.
   double damping_step;  ///< One step of its field, Nms/rad; 0: it has none.
   FrameKind shorts;     ///< The kind that shorts the winding, which no limit bounds; kRest: none.
-  std::vector<std::pair<std::string, OwnValues::Value>> own;
+  OwnKeys own;
   bool nearest = false;  ///< Its fields are rounded, not cut off.
 };
 
@@ -74,19 +71,8 @@ const Subject kSubjects[] = {
 class FrozenFrame : public ::testing::TestWithParam<Subject> {
  protected:
   FrozenFrame() {
-    const auto& subject = GetParam();
-    settings_.name = "motor";
-    settings_.model = subject.model;
-    settings_.id = subject.id;
-    settings_.zero_at_power_on = true;
-    settings_.effort_limit = subject.limit_a;
-    settings_.own = ownDefaults(*entry_.family);
-    for (const auto& [key, value] : subject.own) settings_.own.set(key, value);
-    traits_ = entry_.family->traits(settings_.model, settings_.own);
-    auto built = entry_.family->build(settings_, parts_);
-    if (!built) throw std::invalid_argument(built.error().message);
-    auto solo = std::unique_ptr<SoloMotor>(dynamic_cast<SoloMotor*>(built->release()));
-    rig_ = std::make_unique<SoloRig>(std::move(solo), entry_.simulate(settings_, {}));
+    built_.settings().effort_limit = GetParam().limit_a;
+    rig_ = std::make_unique<SoloRig>(built_.motor(), built_.drive());
   }
 
   [[nodiscard]] sim::MotorPhysics& shaft() { return rig_->drive().physics(); }
@@ -145,11 +131,8 @@ class FrozenFrame : public ::testing::TestWithParam<Subject> {
     EXPECT_NEAR(torqueNm(frames, 0.0), 0.0, GetParam().damping_step > 0.0 ? rounded_nm : most_nm);
   }
 
-  const FamilyEntry& entry_ = familyOf(GetParam().model);
-  MotorSettings settings_;
-  MotorTraits traits_;
-  std::unique_ptr<fdCANbus> bus_ = fdCANbus::adopt("can0", UniqueFd{}, true);
-  BusParts parts_{*bus_};
+  BuiltMotor built_{GetParam().model, GetParam().id, GetParam().own};
+  MotorTraits traits_ = built_.traits();
   std::unique_ptr<SoloRig> rig_;
 };
 

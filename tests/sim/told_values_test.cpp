@@ -9,11 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bus/fdcan_bus.hpp"
-#include "drives/families.hpp"
+#include "sim/built_motor.hpp"
 #include "sim/solo_rig.hpp"
-#include "support/family_of.hpp"
-#include "support/own_defaults.hpp"
 
 namespace rc10::test::told_values_test {
 namespace {
@@ -24,7 +21,7 @@ struct Subject {
   const char* name;
   const char* model;
   int id;
-  std::vector<std::pair<std::string, OwnValues::Value>> own;
+  OwnKeys own;
 };
 
 void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.name; }
@@ -49,35 +46,15 @@ const Subject kSubjects[] = {
     {"LkTech", "LK-MG5010E-i10", 3, {}},
 };
 
-/// A motor that its family built, as the daemon does.
-class Built {
+class Built : public BuiltMotor {
  public:
-  explicit Built(const Subject& subject) : entry_(familyOf(subject.model)) {
-    settings_.name = "motor";
-    settings_.model = subject.model;
-    settings_.id = subject.id;
-    settings_.zero_at_power_on = true;
-    settings_.own = ownDefaults(*entry_.family);
-    for (const auto& [key, value] : subject.own) settings_.own.set(key, value);
-    const auto traits = entry_.family->traits(settings_.model, settings_.own);
-    settings_.effort_limit = traits.effort_full_scale > 0.0F ? 0.5F * traits.effort_full_scale : 10.0F;
-    if (settings_.model.starts_with("ODrive")) settings_.velocity_limit_rpm = 600.0F;  // it must be given
-    if (traits.host_loops != nullptr) settings_.loops = *traits.host_loops;
+  explicit Built(const Subject& subject) : BuiltMotor(subject.model, subject.id, subject.own) {
+    const auto own = traits();
+    settings().effort_limit = own.effort_full_scale > 0.0F ? 0.5F * own.effort_full_scale : 10.0F;
+    if (settings().model.starts_with("ODrive")) settings().velocity_limit_rpm = 600.0F;  // it must be given
+    if (own.host_loops != nullptr) settings().loops = *own.host_loops;
   }
-
-  std::unique_ptr<SoloMotor> motor() {
-    auto built = entry_.family->build(settings_, parts_);
-    if (!built) throw std::invalid_argument(built.error().message);
-    return std::unique_ptr<SoloMotor>(dynamic_cast<SoloMotor*>(built->release()));
-  }
-  std::unique_ptr<sim::Drive> drive() { return entry_.simulate(settings_, {}); }
-  [[nodiscard]] double limit() const { return static_cast<double>(settings_.effort_limit); }
-
- private:
-  const FamilyEntry& entry_;
-  MotorSettings settings_;
-  std::unique_ptr<fdCANbus> bus_ = fdCANbus::adopt("can0", UniqueFd{}, true);
-  BusParts parts_{*bus_};
+  [[nodiscard]] double limit() { return static_cast<double>(settings().effort_limit); }
 };
 
 class ToldValues : public ::testing::TestWithParam<Subject> {

@@ -1,4 +1,4 @@
-// Messages between rc10-web and this page; src/web/page_messages.hpp and columns_frame.hpp are their other end.
+// Messages between rc10-web and this page; src/web/page_messages.hpp, frame_writer.hpp and columns_frame.hpp are their other end.
 
 import type { TestReport } from './motion_test';
 

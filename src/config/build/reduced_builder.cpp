@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "app/mode_words.hpp"
 #include "config/build/shaping_builder.hpp"
-#include "config/mode_words.hpp"
 #include "config/yaml/number_text.hpp"
 
 namespace rc10 {
@@ -64,7 +64,7 @@ void readEffort(MotorParse& in) {
   float effort = 0.0F;
   in.settings.read(key, effort);
   const float limit = effortLimitOf(in.motor(), in.traits.effort_full_scale);
-  if (const std::string modes = modesOf(in.traits.own_loops); !modes.empty()) {
+  if (const std::string modes = modeWords(in.traits.own_loops); !modes.empty()) {
     in.problems.warning(given->place(), given->path,
                         "does not act in " + modes +
                             ", whose loops in the drive obey its own maximum; lower that with the vendor's "

@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
+#include "app/mode_words.hpp"
 #include "app/text_table.hpp"
 #include "bus/frame_text.hpp"
 #include "config/check/bus_load_check.hpp"
-#include "config/mode_words.hpp"
 #include "config/yaml/number_text.hpp"
 #include "config/yaml/problem.hpp"
 #include "module/serial_keys.hpp"
@@ -301,7 +301,7 @@ std::string modulesText(const RobotConfig& config) {
 std::string modesText(const BusConfig& bus) {
   std::map<std::string, std::vector<std::string>> motors_by_modes;
   for (const auto& motor : bus.motors)
-    motors_by_modes[modesOf(motor.traits().modes, ", ")].push_back(motor.name());
+    motors_by_modes[modeWords(motor.traits().modes, ", ")].push_back(motor.name());
   std::string text;
   for (const auto& [modes, motors] : motors_by_modes) {
     text += "  modes of " + (motors_by_modes.size() == 1 ? "all" : listWords(motors)) + ": " + modes + "\n";

@@ -62,8 +62,7 @@ constexpr std::string_view kAngle = "angle_deg";
     case Refusal::kMoving: return "still turning: the e-stop is cleared when every motor stands still";
     case Refusal::kEstopInput:
       return "the e-stop input is open: release the button, or mend its wire or chip; with an enabling "
-             "switch "
-             "hold it in the middle";
+             "switch hold it in the middle";
     case Refusal::kMayTurn:
       return fmt::format(
           "no feedback, and it may still turn: wait until {:.6g} s (run_down_s) after its last feedback",
@@ -81,15 +80,14 @@ constexpr std::string_view kAngle = "angle_deg";
     case Refusal::kTurnUnclear:
       return fmt::format(
           "its turn is unclear: turn it by hand into its travel ({}); with a travel of a turn or more set "
-          "its "
-          "angle, rc10ctl zero",
+          "its angle, rc10ctl zero",
           travelText(motor.travel));
     case Refusal::kOutOfReach:
       return fmt::format(
           "with this zero part of its travel ({}) would lie beyond the positions that its drive can be told: "
           "turn it back towards the drive's own 0, near which most drives are when they are switched on (at "
-          "the end of its "
-          "scale there is no zero at all); or the drive has not told its count of turns yet: try again",
+          "the end of its scale there is no zero at all); or the drive has not told its count of turns yet: "
+          "try again",
           travelText(motor.travel));
     case Refusal::kScanning:
     case Refusal::kBusHeld:

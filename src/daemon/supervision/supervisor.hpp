@@ -154,6 +154,8 @@ class Supervisor {
   void settle(std::size_t motor, Refusal outcome) noexcept;
   void configure(const Order& order, const Tick& tick) noexcept;
   [[nodiscard]] Refusal mayConfigure(std::size_t motor) const noexcept;
+  /// Motors of its group that are on or held, and would stop for its loss.
+  [[nodiscard]] MotorSet relyOn(std::size_t motor) const noexcept;
   void watchConfiguring(const Tick& tick) noexcept;
   void scan(const Order& order, const Tick& tick) noexcept;
   void watchScan(const Tick& tick) noexcept;

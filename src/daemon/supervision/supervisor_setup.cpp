@@ -21,10 +21,14 @@ Refusal Supervisor::mayConfigure(std::size_t motor) const noexcept {
     case MotorStatus::kFault: break;
   }
   if (axes_[motor].fallbackActs()) return Refusal::kStillActs;
-  // It may be silent while it stores: a loss that its group would stop for is not seen then.
+  return relyOn(motor).any() ? Refusal::kOthersOn : Refusal::kNone;
+}
+
+// It may be silent while it stores: a loss that its group would stop for is not seen then.
+MotorSet Supervisor::relyOn(std::size_t motor) const noexcept {
   const auto* group = groupOf(motor);
   const bool needed = group != nullptr && group->required.test(motor);
-  return needed && (group->on(axes_) | group->held(axes_)).any() ? Refusal::kOthersOn : Refusal::kNone;
+  return needed ? group->on(axes_) | group->held(axes_) : MotorSet{};
 }
 
 void Supervisor::configure(const Order& order, const Tick& tick) noexcept {
@@ -40,9 +44,7 @@ void Supervisor::configure(const Order& order, const Tick& tick) noexcept {
   }
   result.motors[motor] = mayConfigure(motor);
   if (result.motors[motor] != Refusal::kNone) {
-    const auto* group = groupOf(motor);
-    if (group != nullptr && result.motors[motor] == Refusal::kOthersOn)
-      result.in_the_way = group->on(axes_) | group->held(axes_);
+    if (result.motors[motor] == Refusal::kOthersOn) result.in_the_way = relyOn(motor);
     link_.results.push(result);
     return;
   }

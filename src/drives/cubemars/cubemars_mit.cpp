@@ -11,10 +11,6 @@
 namespace rc10 {
 namespace {
 
-[[nodiscard]] SpringLaw resistance(double gain) noexcept {
-  return {.damping_nms_per_rad = gain, .resists = true};
-}
-
 using cubemars::MitOrder;
 using cubemars::ServoCommand;
 

@@ -202,7 +202,7 @@ void Damiao_Motor::release() noexcept {
 }
 
 SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
-  if (ordered() == FrameKind::kDamp) return {.damping_nms_per_rad = damp_nms_per_rad_, .resists = true};
+  if (ordered() == FrameKind::kDamp) return resistance(damp_nms_per_rad_);
   SpringLaw law;
   // Gains are at the output shaft; an own gear behind the drive counts squared.
   const double gear = toDrive(1.0) * toDrive(1.0);
@@ -212,10 +212,7 @@ SpringLaw Damiao_Motor::mitLaw(const Target& target) const noexcept {
     case ControlMode::kCurrent:
       law.torque_nm = torqueToDrive(target.value * static_cast<double>(torqueNmPerA())) + ff_nm;
       break;
-    case ControlMode::kBrake:
-      law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
-      law.resists = true;
-      break;
+    case ControlMode::kBrake: return resistance(own_.gains.velocity_damping_nms_per_rad / gear);
     case ControlMode::kVelocity:
       law.damping_nms_per_rad = own_.gains.velocity_damping_nms_per_rad / gear;
       law.velocity_rad_s = toDrive(target.value) * kRadPerSPerRpm;

@@ -337,7 +337,7 @@ double MyActuator_Motor::dampingOf() const noexcept {
                              : kUnknownDamping;
 }
 
-void MyActuator_Motor::damp() noexcept { sendMotion({.damping_nms_per_rad = dampingOf()}); }
+void MyActuator_Motor::damp() noexcept { sendMotion(resistance(dampingOf())); }
 
 void MyActuator_Motor::sendMotion(SpringLaw motion) noexcept {
   boundGains(motion, myactuator::kMotionStiffness, myactuator::kMotionDamping);

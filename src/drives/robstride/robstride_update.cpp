@@ -70,7 +70,7 @@ void RobStride_Motor::followOperation(const Target& target, MonotonicTime now) n
       wanted.velocity_rad_s = clampVelocity(toDrive(target.value) / kRpmPerRadPerS);
       wanted.damping_nms_per_rad = velocity_gain_;
       break;
-    case ControlMode::kBrake: wanted = {.damping_nms_per_rad = velocity_gain_, .resists = true}; break;
+    case ControlMode::kBrake: wanted = resistance(velocity_gain_); break;
     case ControlMode::kTotalAngle:
       take_feed_forward();
       wanted.position_rad = positionRadFor(target.value);
@@ -84,8 +84,7 @@ void RobStride_Motor::followOperation(const Target& target, MonotonicTime now) n
       wanted.damping_nms_per_rad = std::max(static_cast<double>(target.damping_nms_per_rad), 0.0) / square;
       break;
     default:
-      if (ordered() == FrameKind::kDamp)
-        wanted = {.damping_nms_per_rad = kOperationDampShare * velocity_gain_, .resists = true};
+      if (ordered() == FrameKind::kDamp) wanted = resistance(kOperationDampShare * velocity_gain_);
       break;
   }
   // Without feedback nothing that depends on where it is can be kept within the limits.

@@ -3,10 +3,7 @@
 #include <ostream>
 #include <string>
 
-#include <gtest/gtest.h>
-
-#include "config/load_config.hpp"
-#include "daemon/virtual_robot.hpp"
+#include "daemon/one_motor_robot.hpp"
 
 namespace rc10::test {
 
@@ -14,7 +11,6 @@ namespace rc10::test {
 struct AbsoluteEncoder {
   const char* name;
   const char* motor;
-  const char* bus = "";
   double parked_deg = 0.0;  ///< Beside that of the robot.
 };
 
@@ -29,29 +25,22 @@ inline constexpr AbsoluteEncoder kAbsoluteEncoders[] = {
     {"RobStride", "model: RS00, id: 3"},
     {"CubeMarsServo", "model: AK80-9, id: 5, output_encoder: true"},
     {"CubeMarsMit", "model: AK80-9, id: 6, protocol: mit, output_encoder: true"},
-    {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true",
-     "data_bitrate: 5000000\n    "},
+    {"Moteus", "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true"},
     {"MoteusGeared",
-     "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true, rotor_to_output_ratio: 0.1",
-     "data_bitrate: 5000000\n    "},
+     "model: moteus, id: 7, motor_kv_rpm_per_v: 100, absolute: true, rotor_to_output_ratio: 0.1"},
     {"MyActuator", "model: RMD-X8-20, id: 11, absolute_encoder: true"},
     {"LkTech", "model: LK-MG5010E-i10, id: 12"},
     {"Vesc",
      "model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, feedback_hz: 500, angle: encoder"},
 };
 
-/// The robot of one motor `arm`, parked at an angle of its drive. `keys` begin with a comma, `modules` are
+/// The robot of one motor, parked at an angle of its drive. `keys` begin with a comma, `modules` are
 /// whole lines.
 inline RobotConfig robotOfArm(const AbsoluteEncoder& subject, const std::string& keys, double parked_deg,
                               const std::string& modules = "") {
-  auto outcome = parseRobotConfig(std::string{"robot: turn\nrealtime: preferred\nbuses:\n  - name: bench\n"
-                                              "    type: sim\n    "} +
-                                      subject.bus + "motors:\n      - {name: arm, " + subject.motor + keys +
-                                      ", simulated: {initial_angle_deg: " +
-                                      std::to_string(subject.parked_deg + parked_deg) + "}}\n" + modules,
-                                  "turn.yaml");
-  EXPECT_TRUE(outcome.config) << outcome.errorText();
-  return outcome.config.value_or(twoWheelsAndYaw());
+  return oneMotorRobot(std::string{subject.motor} + keys + ", simulated: {initial_angle_deg: " +
+                           std::to_string(subject.parked_deg + parked_deg) + "}",
+                       modules);
 }
 
 }  // namespace rc10::test

@@ -8,6 +8,6 @@
 namespace rc10 {
 
 /// "velocity, angle and total_angle"; empty without any.
-[[nodiscard]] std::string modesOf(ModeSet modes, std::string_view last_joint = " and ");
+[[nodiscard]] std::string modeWords(ModeSet modes, std::string_view last_joint = " and ");
 
 }  // namespace rc10

@@ -1,4 +1,4 @@
-#include "config/mode_words.hpp"
+#include "app/mode_words.hpp"
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace rc10 {
 
-std::string modesOf(ModeSet modes, std::string_view last_joint) {
+std::string modeWords(ModeSet modes, std::string_view last_joint) {
   std::vector<std::string> words;
   for (int i = 0; i < kControlModeCount; ++i) {
     const auto mode = static_cast<ControlMode>(i);
