@@ -19,6 +19,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
+[[nodiscard]] DriveWrite timeoutOf500Ms(const DriveSetup& setup) {
+  const auto& settings = setup.settings;
+  const auto found = std::find_if(settings.begin(), settings.end(),
+                                  [](const DriveSetting& each) { return each.name == "timeout_ms"; });
+  EXPECT_NE(found, settings.end());
+  DriveWrite write;
+  write.values[0] = {static_cast<std::uint8_t>(found - settings.begin()), 500.0};
+  write.count = 1;
+  write.save = true;
+  return write;
+}
+
 /// One that can store a setting without becoming another drive, at rest.
 class StoringDrive {
  public:
@@ -39,21 +51,10 @@ class StoringDrive {
     order.id = 77;
     order.operation = Operation::kConfigure;
     order.motors.set(0);
-    order.drive = timeoutOf500Ms();
+    order.drive = timeoutOf500Ms(setup());
     ASSERT_TRUE(robot->exchange().orders.push(order));
   }
   [[nodiscard]] const DriveSetup& setup() const { return *config_.buses[0].motors[0].traits().setup; }
-  [[nodiscard]] DriveWrite timeoutOf500Ms() const {
-    const auto& settings = setup().settings;
-    const auto found = std::find_if(settings.begin(), settings.end(),
-                                    [](const DriveSetting& each) { return each.name == "timeout_ms"; });
-    EXPECT_NE(found, settings.end());
-    DriveWrite write;
-    write.values[0] = {static_cast<std::uint8_t>(found - settings.begin()), 500.0};
-    write.count = 1;
-    write.save = true;
-    return write;
-  }
   bool answered() { return robot->exchange().results.pop(result); }
   [[nodiscard]] DriveConfiguring& configuring() {
     return *robot->robot().motors()[0].motor->driveConfiguring();
@@ -140,6 +141,49 @@ TEST(StoringDrives, OfAGroupAreConfiguredOnlyWhileTheOthersRestAndKeepThemFromBe
   EXPECT_EQ(robot.orderFor(wheel, Operation::kEnable).motors[1], Refusal::kConfiguring);
 }
 
+TEST(StoringDrives, DelayTheReturnOfTheirGroupAndDoNotPreventIt) {
+  const auto outcome = parseRobotConfig(
+      "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
+      "      - {name: arm, model: DM4310, id: 1, master_id: 17}\n"
+      "      - {name: left, model: M3508, id: 2}\n"
+      "  - {name: b, type: sim, motors: [{name: right, model: M3508, id: 2}]}\n"
+      "groups: [{name: all, motors: [arm, left, right], on_return: rearm_at_rest}]\n",
+      "lifter.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot(*outcome.config);
+  robot.run(2000);
+  const auto wheels = MotorSet{0b110};
+  ASSERT_EQ(robot.orderFor(wheels, Operation::kEnable).motors[1], Refusal::kNone);
+  robot.run(50);
+  robot.freezeBus(1, true);
+  robot.run(100);
+  ASSERT_EQ(robot.motor(1).status, MotorStatus::kReady);
+  auto& configuring = *robot.robot().motors()[0].motor->driveConfiguring();
+  Order order;
+  order.id = 77;
+  order.operation = Operation::kConfigure;
+  order.motors.set(0);
+  order.drive = timeoutOf500Ms(*outcome.config->buses[0].motors[0].traits().setup);
+  ASSERT_TRUE(robot.exchange().orders.push(order));
+  for (int i = 0; i < 500 && !configuring.excusesSilence(); ++i) robot.tick();
+  ASSERT_TRUE(configuring.excusesSilence());
+  robot.freezeBus(1, false);
+  robot.simBus(0).silence(0, true);  // it writes its flash
+  robot.run(450);
+  EXPECT_EQ(robot.motor(1).status, MotorStatus::kReady) << "at rest for longer than a group waits";
+  robot.simBus(0).silence(0, false);
+  OrderResult result;
+  int ticks = 0;
+  while (!robot.exchange().results.pop(result) && ticks < 9000) {
+    robot.run(1);
+    ++ticks;
+  }
+  ASSERT_LT(ticks, 9000);
+  robot.run(400);
+  EXPECT_EQ(robot.motor(1).status, MotorStatus::kActive);
+  EXPECT_EQ(robot.motor(2).status, MotorStatus::kActive);
+}
+
 TEST_P(StoringDriveTest, StaysReadyWithItsReference) {
   StoringDrive drive{GetParam()};
   drive.begin();
@@ -197,7 +241,7 @@ TEST_P(StoringDriveTest, IsLostSoonIfItNeverAnswersAgain) {
 // The supervisor refuses to enable it meanwhile.
 TEST_P(StoringDriveTest, IsLostAsEverOnceItIsOn) {
   StoringDrive drive{GetParam()};
-  drive.configuring().begin(drive.timeoutOf500Ms());
+  drive.configuring().begin(timeoutOf500Ms(drive.setup()));
   drive.tickUntilItStores();
   drive.robot->beginEnabling(MotorSet{1});
   drive.robot->tick();
