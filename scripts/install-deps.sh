@@ -2,7 +2,7 @@
 # Installs the Debian packages that parts of this project need.
 #   scripts/install-deps.sh [--list|--missing|--may-ask] [build] [test] [languages] [lint] [kernel] [vm] [web] [package]      default: all
 # --list: installs nothing, and prints the packages; --missing: those that are not installed.
-# --may-ask: installs nothing, but lets sudo ask for the password now, if something is missing.
+# --may-ask: installs nothing, but says what is missing, and lets sudo ask for the password now.
 set -euo pipefail
 # shellcheck source=scripts/lib/nearest.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lib/nearest.sh"
@@ -60,6 +60,24 @@ apt() {
         ${no_proxy:+"no_proxy=$no_proxy"} DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@"
 }
 
+# DPkg::Lock::Timeout is not for the lock of the lists (apt 2.6), which another apt may hold on a machine that was just started.
+update_lists() {
+    local said begin=$SECONDS
+    until said=$(apt update 2>&1); do
+        if [[ $said != */lists/lock* ]] || [ $((SECONDS - begin)) -ge 300 ]; then
+            echo "$said" >&2
+            return 1
+        fi
+        sleep 2
+    done
+}
+
+tell() {
+    echo "install-deps: $1 ${#absent[@]} Debian packages: ${absent[*]}" >&2
+    [[ ${absent[*]} != *linux-image-rt-* ]] \
+        || echo "install-deps: NOTE among them is a PREEMPT_RT kernel, which GRUB may start from then on" >&2
+}
+
 list='' list_missing='' may_ask=''
 [ "${1:-}" != --list ] || { list=yes && shift; }
 [ "${1:-}" != --missing ] || { list_missing=yes && shift; }
@@ -89,11 +107,12 @@ if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
     die "missing packages, and neither root nor sudo to install them: apt-get install ${absent[*]}"
 fi
 if [ -n "$may_ask" ]; then
+    tell "this needs"
     [ ! -t 0 ] || as_root true || die "sudo did not allow it; somebody who may: apt-get install ${absent[*]}"
     exit
 fi
-echo "install-deps: installing ${absent[*]}" >&2
+tell installing
 install=(install --no-install-recommends --yes "${absent[@]}")
 # The package lists may be missing or name versions that the archive no longer has.
-apt "${install[@]}" >&2 || { apt update >&2 && apt "${install[@]}" >&2; } \
+apt "${install[@]}" >&2 || { update_lists && apt "${install[@]}" >&2; } \
     || die "apt-get could not install ${absent[*]}"

@@ -62,7 +62,8 @@ name=
 
 # Packages of all parts, at once.
 mapfile -t groups < <(for part in "${wanted[@]}"; do sed -n 's/^need //p' "$here/test/$part.sh"; done | tr ' ' '\n' | sort -u)
-"$here/install-deps.sh" --may-ask "${groups[@]}"
+# apt ignores Ctrl-C where it unpacks, and bash then forgets it.
+trap 'exit 130' INT
 missing=$("$here/install-deps.sh" --missing "${groups[@]}")
 if [ -n "$missing" ]; then
     # run_parts.py says it as well, but Python is among the packages.
@@ -70,7 +71,7 @@ if [ -n "$missing" ]; then
     how_long="How long they take: CONTRIBUTING.md."
     [ -z "$cold_s" ] || how_long="About $(as_minutes "$cold_s") on 2 cores, with the Debian packages, which come first."
     echo "rc10d's tests: ${wanted[*]}. $how_long"
-    [[ $missing != *linux-image-rt-* ]] || echo "NOTE among the packages is a PREEMPT_RT kernel, which GRUB may start from then on."
+    "$here/install-deps.sh" --may-ask "${groups[@]}"
 fi
 progress "test.sh: installing Debian packages" 90 need "${groups[@]}"
 exec /usr/bin/python3 "$here/lib/run_parts.py" --name "$name" "${wanted[@]}"

@@ -5,6 +5,9 @@
 # RC10_VENV: where (default: .venv in the repository).
 set -euo pipefail
 unset CDPATH # a `cd` that finds a folder by it prints that
+# Packages of the caller's, which pip would take for installed ones.
+unset PYTHONPATH PYTHONHOME
+export PIP_USER=0
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 venv=${RC10_VENV:-$repo/.venv}
@@ -53,16 +56,41 @@ install() {
     "$base" "$repo/scripts/lib/hashed_requirements.py" "$@" >"$venv/.requirements" || return
     "${pip[@]}" --require-hashes --requirement="$venv/.requirements" >&2
 }
+
+# others: what the folder has beside .inputs and what was there before.
+others() {
+    find "$venv" -mindepth 1 -maxdepth 1 ! -path "$venv/.inputs" ! -path "$venv/.before" "$@"
+}
+
+# One that works stays in use until another one does: there may be no network.
+# shellcheck disable=SC2317  # called by the trap
+put_back() {
+    others -exec rm -rf {} +
+    find "$venv/.before" -mindepth 1 -maxdepth 1 -exec mv -t "$venv" {} +
+    rmdir "$venv/.before"
+    echo "$made_from" >"$venv/.inputs"
+    echo "venv: $venv is as it was before" >&2
+}
+
 if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
-    echo "venv: making $venv" >&2
+    echo "venv: making $venv${made_from:+ anew: what it is made from has changed}" >&2
     : >"$venv/.inputs"
-    find "$venv" -mindepth 1 ! -path "$venv/.inputs" -delete
+    rm -rf "$venv/.before"
+    if [ -n "$made_from" ]; then
+        mkdir "$venv/.before"
+        trap put_back EXIT
+        others -exec mv -t "$venv/.before" {} +
+    else
+        others -exec rm -rf {} +
+    fi
     "$base" -m venv "$venv" >&2
     install "${client[@]}"
     # Its build tools are among the requirements.
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2
     made_from=$client_hash
     echo "$made_from" >"$venv/.inputs"
+    trap - EXIT
+    rm -rf "$venv/.before"
 fi
 if [ "$wanted" = all ] && [ "$made_from" != "$all_hash" ]; then
     echo "venv: adding to $venv what tests and tools need" >&2

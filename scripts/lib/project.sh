@@ -37,6 +37,10 @@ build() {
     echo "-- building $preset${*:+: $*}"
     # As a condition, as most callers need it, it would go on after a line that fails.
     mkdir -p "$repo/build" || return
+    if [ ! -w "$repo/build" ]; then
+        echo "build/ belongs to another user: sudo rm -r build .venv" >&2
+        return 1
+    fi
     (
         cd "$repo" || return
         # Two builds in one tree would disturb each other.

@@ -315,7 +315,7 @@ def main() -> int:
         LOGS.mkdir(parents=True, exist_ok=True)
         lock = (LOGS / "lock").open("w")
     except PermissionError as error:
-        remedy = "build/ belongs to another user: sudo rm -r build"
+        remedy = "build/ belongs to another user: sudo rm -r build .venv"
         print(f"test.sh: {error}: {remedy}", file=sys.stderr)
         return 2
     except OSError as error:
@@ -325,7 +325,7 @@ def main() -> int:
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        print("test.sh: another run of this clone is under way", file=sys.stderr)
+        print("test.sh: another run of this clone is under way: let it end first", file=sys.stderr)
         return 2
     for old in LOGS.glob("*.costs"):
         old.unlink()

@@ -165,7 +165,61 @@ def test_a_kernel_among_the_packages_is_told_before_they_are_installed(
     run = subprocess.run(
         [REPO / "scripts" / "test.sh", part], env=bare, capture_output=True, text=True, check=False
     )
-    assert ("PREEMPT_RT kernel, which GRUB may start" in run.stdout) == told
+    assert ("PREEMPT_RT kernel, which GRUB may start" in run.stderr) == told
+
+
+def test_packages_are_named_before_sudo_asks_for_the_password(tmp_path: Path) -> None:
+    for program, text in (
+        ("dpkg-query", "exit 0"),
+        ("id", "echo 1000"),
+        ("sudo", "echo ASKED >&2"),
+    ):
+        (tmp_path / program).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / program).chmod(0o755)
+    terminal, ours = os.openpty()
+    run = subprocess.run(
+        [REPO / "scripts" / "install-deps.sh", "--may-ask", "web"],
+        env=os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"},
+        stdin=ours,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    os.close(terminal)
+    os.close(ours)
+    assert run.stderr.splitlines() == [
+        "install-deps: this needs 2 Debian packages: chromium fonts-noto-cjk",
+        "ASKED",
+    ]
+
+
+APT = """#!/bin/bash
+echo "$*" | grep -o 'install \\|update' >>"$CALLS"
+[ "$(grep -c update "$CALLS")" -lt 3 ] || exit 0
+echo "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 1"
+exit 100
+"""
+
+
+def test_package_lists_that_another_apt_reads_are_waited_for(tmp_path: Path) -> None:
+    """A machine that was just started updates them by itself."""
+    for program, text in (
+        ("dpkg-query", "#!/bin/sh\n"),
+        ("id", "#!/bin/sh\necho 0\n"),
+        ("sleep", "#!/bin/sh\n"),
+        ("apt-get", APT),
+    ):
+        (tmp_path / program).write_text(text)
+        (tmp_path / program).chmod(0o755)
+    calls = tmp_path / "calls"
+    calls.touch()
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    subprocess.run(
+        [REPO / "scripts" / "install-deps.sh", "web"],
+        env=os.environ | {"PATH": path, "CALLS": str(calls)},
+        check=True,
+    )
+    assert calls.read_text().split() == ["install", "update", "update", "update", "install"]
 
 
 @pytest.mark.parametrize("name", ["default", "ci", "all"])

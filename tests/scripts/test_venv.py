@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,8 @@ import os, shutil, sys
 shutil.rmtree(sys.argv[-1] + "/bin", ignore_errors=True)
 os.makedirs(sys.argv[-1] + "/bin")
 os.symlink(sys.executable, sys.argv[-1] + "/bin/python")
-open(sys.argv[-1] + "/pyvenv.cfg", "w").close()
+# With the fakes, which are among the packages of the user.
+open(sys.argv[-1] + "/pyvenv.cfg", "w").write("include-system-site-packages = true\\n")
 """
 PIP = """
 import json, os, re, sys
@@ -29,6 +31,7 @@ asked = {
 }
 with open(os.environ["CALLS"], "a") as calls:
     calls.write(json.dumps(asked) + "\\n")
+sys.exit("no network" if "OFFLINE" in os.environ else 0)
 """
 
 
@@ -39,6 +42,10 @@ class Environment:
             (folder / "fakes" / name).mkdir(parents=True)
             (folder / "fakes" / name / "__init__.py").touch()
             (folder / "fakes" / name / "__main__.py").write_text(text)
+        packages = folder / "user" / "lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}"
+        start = packages / "site-packages" / "usercustomize.py"
+        start.parent.mkdir(parents=True)
+        start.write_text(f"import sys\nsys.path.insert(0, {str(folder / 'fakes')!r})\n")
 
     def make(self, *words: str) -> list[dict[str, object]]:
         """Requests to pip of venv.sh."""
@@ -58,7 +65,7 @@ class Environment:
             env={
                 **os.environ,
                 "CALLS": str(calls),
-                "PYTHONPATH": str(self._folder / "fakes"),
+                "PYTHONUSERBASE": str(self._folder / "user"),
                 "RC10_VENV": str(self._folder / "venv"),
             },
         )
@@ -118,6 +125,41 @@ def test_one_that_was_interrupted_is_made_anew(environment: Environment, tmp_pat
     (tmp_path / "venv" / "half").touch()
     assert environment.make("client") == [asked(CLIENT), ITSELF]
     assert not (tmp_path / "venv" / "half").exists()
+
+
+def test_one_that_works_stays_until_another_one_does(
+    environment: Environment, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The network may be away; and the owner may have added something."""
+    environment.make("client")
+    (tmp_path / "venv" / ".inputs").write_text("of before\n")
+    added = tmp_path / "venv" / "added"
+    added.write_text("by its owner")
+    monkeypatch.setenv("OFFLINE", "yes")
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        environment.make("client")
+    assert "anew: what it is made from has changed" in refused.value.stderr
+    assert "is as it was before" in refused.value.stderr
+    assert added.read_text() == "by its owner"
+    assert (tmp_path / "venv" / "bin" / "python").exists()
+    monkeypatch.delenv("OFFLINE")
+    assert environment.make("client") == [asked(CLIENT), ITSELF]
+    assert sorted(path.name for path in (tmp_path / "venv").iterdir()) == [
+        ".inputs",
+        ".requirements",
+        "bin",
+        "pyvenv.cfg",
+    ]
+
+
+def test_packages_of_the_caller_are_not_taken_for_installed_ones(
+    environment: Environment, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sourced ROS workspace names its packages so."""
+    (tmp_path / "workspace").mkdir()
+    (tmp_path / "workspace" / "pip.py").write_text("raise SystemExit('of the workspace')\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "workspace"))
+    assert environment.make("client") == [asked(CLIENT), ITSELF]
 
 
 def test_tests_and_tools_need_all(environment: Environment) -> None:
