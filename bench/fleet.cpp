@@ -114,8 +114,12 @@ void Fleet::addWideMotors(Robot& robot, const Shape& shape) {
       auto motor = std::make_unique<WideMotor>(wheel(b * shape.motors_per_bus + i, 1), feedback_id);
       must(bus.registerMotor(*motor));
       motors.push_back(motor.get());
-      robot.motors().push_back(
-          {.motor = std::move(motor), .bus = b, .feedback_timeout = std::chrono::milliseconds{20}});
+      // As Robot::build() makes them.
+      robot.motors().push_back({.motor = std::move(motor),
+                                .bus = b,
+                                .feedback_timeout = std::chrono::milliseconds{20},
+                                .oldest_heard = std::chrono::milliseconds{10},
+                                .most_unheard = std::chrono::milliseconds{18}});
     }
     for (std::size_t first = 0; first < motors.size(); first += kGroup) {
       const CanId command_id{0x100U + static_cast<std::uint32_t>(first), false};

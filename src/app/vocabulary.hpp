@@ -38,7 +38,7 @@ inline constexpr int kMotorStatusCount = 5;
 enum class RobotStatus : std::uint8_t {
   kRun = 0,
   kEstop = 1,     ///< Latched: every motor at rest until `clear`.
-  kStopping = 2,  ///< The process is about to end: rest frames only.
+  kStopping = 2,  ///< The process is about to end: what the fallbacks do, then rest frames only.
 };
 
 /// Source of what the shaft feels: motor_state_t.lcm.

@@ -183,7 +183,8 @@ ModuleSignals jointSignals() {
           {.text = "no client has been heard for silence_max_s: it holds no longer"},
           {.text =
                "homing failed: with this zero part of the motor's travel (angle_min_deg to angle_max_deg) "
-               "would lie beyond the positions that its drive can be told; see docs/safety.md"},
+               "would lie beyond the positions that its drive can be told, or its count of turns is in "
+               "doubt until it is disabled and enabled anew; see docs/safety.md"},
           {.text =
                "homing has not begun, or has ended: its motor is not ACTIVE, or another client commands it; "
                "enable it, and let home fall to 0 and rise again"}}};
@@ -343,8 +344,15 @@ class Joint : public Module_Base {
 
   // The reference of its angle is in doubt, and a stop may lie beyond the limits that follow from it.
   void beginHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
+    const auto now = measured(feedback, tick, robot);
+    if (!now.switch_heard) {
+      // For nothing it would give up its angle, and with it the load that it holds there.
+      robot.report(kNoSwitch);
+      if (!feedback.zeroed) state_ = State::kHomingFailed;
+      return;
+    }
     robot.forgetReference(motor_);
-    homing_.start(measured(feedback, tick, robot));
+    homing_.start(now);
     state_ = State::kHoming;
     move_ = Move::kNone;
     zero_asked_ = false;

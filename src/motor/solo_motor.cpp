@@ -114,6 +114,7 @@ void SoloMotor::noteLoss(bool was_known) noexcept {
 }
 
 bool SoloMotor::setZero(double angle_deg) noexcept {
+  if (feedback_.angle_at_end) return false;  // nobody knows where the shaft is
   const double before_deg = feedback_.total_angle_deg;
   if (!reference_.setZero(angle_deg)) return false;
   feedback_.total_angle_deg = reference_.totalAngleDeg();

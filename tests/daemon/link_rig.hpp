@@ -142,6 +142,7 @@ class LinkRig : public ::testing::Test {
   void finish(const Order& order) {
     OrderResult result;
     result.id = order.id;
+    if (order.operation == Operation::kEnable) result.switched_on = order.motors;
     EXPECT_TRUE(exchange.results.push(result));
   }
 

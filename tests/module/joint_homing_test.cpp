@@ -452,6 +452,31 @@ TEST_F(HomingJoint, DoesNotLookForASwitchThatNobodyHears) {
   EXPECT_THAT(events_, ElementsAre(4U));
 }
 
+TEST_F(HomingJoint, GivesUpNoAngleForASwitchThatNobodyHears) {
+  auto own = jointSettings();
+  own.own.set("homing", std::string{"switch"});
+  own.own.set("switch", std::string{"limit.closed"});
+  build(own);
+  robot_.motor(0).feedback.zeroed = true;
+  switch_heard_ = false;
+  showSwitch();
+  ask(20.0, 0.0);
+  run(500);
+  ASSERT_EQ(state(), kFollowing);
+  ask(20.0, 1.0);
+  run(2);
+  EXPECT_EQ(state(), kFollowing);
+  EXPECT_EQ(mode(), ControlMode::kTotalAngle);
+  EXPECT_TRUE(robot_.motor(0).feedback.zeroed);
+  EXPECT_THAT(events_, ElementsAre(4U)) << "it is told";
+  robot_.motor(0).feedback.zeroed = false;
+  ask(20.0, 0.0);
+  run(2);
+  ask(20.0, 1.0);
+  run(2);
+  EXPECT_EQ(state(), kHomingFailed) << "it has none";
+}
+
 TEST_F(HomingJoint, AnAxisThatDoesNotMoveIsNotHomed) {
   buildWithStop();
   robot_.motor(0).feedback.zeroed = false;

@@ -329,6 +329,8 @@ TEST(CubemarsMit, APositionFieldThatIsCutOffLosesTheReference) {
   (void)bench.feedMit(12.5);
   EXPECT_FALSE(bench.motor().feedback().zeroed);
   EXPECT_TRUE(bench.motor().feedback().angle_at_end);
+  EXPECT_FALSE(bench.motor().setZero(0.0)) << "the next sample would lose it";
+  EXPECT_FALSE(bench.motor().feedback().zeroed);
   (void)bench.feedMit(12.0);
   EXPECT_FALSE(bench.motor().feedback().angle_at_end);
 }

@@ -96,6 +96,7 @@ TEST(CubemarsServo, AtTheEndOfThePositionFieldTheReferenceIsLostAndAnAngleBrakes
   EXPECT_TRUE(bench.motor().feedback().zeroed);
   (void)bench.feedServo(3200.0);
   EXPECT_FALSE(bench.motor().feedback().zeroed);
+  EXPECT_FALSE(bench.motor().setZero(0.0));
   const auto frame = bench.command({.mode = ControlMode::kTotalAngle, .value = 0.0});
   EXPECT_EQ(frame.id, (CanId{0x205, true}));
   EXPECT_EQ(bench.motor().limits(), kLimitAngle);

@@ -204,6 +204,21 @@ TEST(DamiaoMotor, AGapInWhichAWrapMayHideLosesTheReferenceUntilTheDriveTellsItsC
   EXPECT_FALSE(desk.motor().feedback().zeroed);
 }
 
+TEST(DamiaoMotor, WrapsThatItTellsAfterAGapAreNoWayOfTheShaft) {
+  DamiaoDesk desk(damiaoSettingsOf("DMH6215"));  // not absolute
+  desk.motor().order(FrameKind::kPoll);
+  desk.run(3);
+  ASSERT_TRUE(desk.motor().setZero(0.0));
+  (void)desk.tick(milliseconds{300});
+  (void)desk.feed(desk.state);
+  const double before_deg = desk.motor().feedback().total_angle_deg;
+  desk.xout_rad += 25.0F;
+  desk.run(100);
+  ASSERT_TRUE(desk.motor().setZero(before_deg)) << "it has told them";
+  EXPECT_FALSE(desk.motor().setZero(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_NEAR(desk.motor().feedback().total_angle_deg, before_deg, 1.0);
+}
+
 // A drive that starts as fast as nothing that is known: 2 pi lie within its reach of such a silence.
 TEST(DamiaoMotor, ASilenceInWhichItMayHaveRestartedAsksForItsCountAnew) {
   for (const auto silence : {milliseconds{110}, milliseconds{220}, milliseconds{400}, milliseconds{800}}) {

@@ -251,6 +251,18 @@ TEST(DjiReference, AfterALongGapAnAbsoluteEncoderIsOnTheTurnNearestToWhereItWas)
   EXPECT_NEAR(motor.getTotalAngle().value, 2 * 360.0 + 45.0, 1e-6);
 }
 
+TEST(DjiReference, AZeroOfPowerOnIsNotFoundAgainAfterAGap) {
+  auto settings = djiConfig(kGM6020);
+  settings.zero_at_power_on = true;
+  DJI_Motor motor(settings);
+  DjiFeeder feeder(motor);
+  feeder.feedAndTick({.position = 1024});
+  ASSERT_TRUE(motor.feedback().zeroed);
+  (void)feeder.feed({.position = 1024}, milliseconds{500});
+  feeder.tick();
+  EXPECT_FALSE(motor.feedback().zeroed) << "as in each family";
+}
+
 TEST(DjiReference, AnAbsoluteEncoderNeverJumpsWhileItsAngleIsControlledOrHeld) {
   for (const auto kind : {FrameKind::kCommand, FrameKind::kHold}) {
     DJI_Motor motor(djiConfig(kGM6020));

@@ -38,6 +38,10 @@ inline CanFrame readingReply(int current_raw, int rotor_deg_s, std::uint16_t enc
   return frame;
 }
 
-inline CanFrame angleReply(std::int32_t raw) { return frameOf("141#9200000000000000", 1, raw); }
+inline CanFrame angleReply(std::int64_t raw) {
+  CanFrame frame = frameOf("141#0000000000000000");
+  writeLittleEndian(frame.data, 0, static_cast<std::int64_t>(static_cast<std::uint64_t>(raw) << 8U | 0x92U));
+  return frame;
+}
 
 }  // namespace rc10::test::lktech_bench

@@ -54,7 +54,8 @@ TEST(LKTechGolden, TheAngleReplyIsInHundredthsOfADegreeAfterTheCommandByte) {
   const auto backwards = frameOf("141#926073FFFFFFFFFF");
   EXPECT_EQ(decodeAngle(backwards.payload()), -36000);
   const auto short_one = frameOf("141#926073FFFF000000");
-  EXPECT_EQ(decodeAngle(short_one.payload()), -36000) << "firmware that fills 4 bytes only";
+  EXPECT_EQ(decodeAngle(short_one.payload()), 4'294'931'296)
+      << "V2.35 has 7 bytes; of firmware that filled 4, angles below 0 would be told as out of reach";
 }
 
 TEST(LKTechGolden, CommandsAreToldFromRepliesByTheirBytes) {

@@ -44,13 +44,13 @@ class LKTechMotor : public testing::Test {
     return sent;
   }
   /// A drive that is on, at this angle of its encoder, after these turns of the output.
-  void comeOnline(std::uint16_t encoder = 0x2000, int turns = 0) {
+  void comeOnline(std::uint16_t encoder = 0x2000, std::int64_t turns = 0) {
     hear(
         frameOf("141#9A1E6009640000"
                 "00"));  // 30 degC, 24 V, on, no error
     hear(readingReply(0, 0, encoder));
-    const double deg = encoder * 360.0 / 65536.0 + turns * 360.0;
-    hear(angleReply(static_cast<std::int32_t>(std::lround(deg * motor_gear_ * 100.0))));
+    const double deg = encoder * 360.0 / 65536.0 + static_cast<double>(turns) * 360.0;
+    hear(angleReply(std::llround(deg * motor_gear_ * 100.0)));
     hear(readingReply(0, 0, encoder));
   }
   /// Heard first while it turns, with its encoder at 0, and told to hold.
@@ -411,6 +411,19 @@ TEST_F(LKTechMotor, FromBeyondWhatCanBeToldNoPlaceIsFollowed) {
   EXPECT_THAT(sent, testing::StartsWith("141#A2")) << "velocity 0";
   EXPECT_THAT(sent, testing::EndsWith("00000000"));
   EXPECT_NE(motor_->limits() & kLimitAngle, 0U);
+}
+
+// rc10d was restarted: the drive has gone on counting, in 56 bits of which a command has 32.
+TEST_F(LKTechMotor, ACountThatNoCommandCanTellIsFollowedToNoPlace) {
+  for (const std::int64_t turns : {59'660LL, -59'660LL, 119'305LL, 1'000'000LL}) {
+    SCOPED_TRACE(turns);
+    motor_ = motorOf(settingsOf());
+    comeOnline(0, turns);
+    const auto sent = told({.mode = ControlMode::kTotalAngle, .value = motor_->feedback().total_angle_deg});
+    EXPECT_THAT(sent, testing::StartsWith("141#A2")) << "velocity 0";
+    EXPECT_THAT(sent, testing::EndsWith("00000000"));
+    EXPECT_NE(motor_->limits() & kLimitAngle, 0U);
+  }
 }
 
 TEST_F(LKTechMotor, NonFiniteAndHugeTargetsAreHarmless) {

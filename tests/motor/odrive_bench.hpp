@@ -94,6 +94,16 @@ class OdriveMotor : public testing::Test {
     EXPECT_EQ(frames[1].data[0], 1);
   }
 
+  /// Rest, and that its inputs of before are gone before any torque is possible.
+  void expectIdleAsked(const std::vector<CanFrame>& frames) {
+    ASSERT_EQ(frames.size(), 4U);
+    EXPECT_EQ(frames[0].id, odrive::canId(node_, odrive::Message::kSetInputVel));
+    EXPECT_EQ(numberAt(frames[0], 0), 0.0F);
+    EXPECT_EQ(frames[1].id, odrive::canId(node_, odrive::Message::kSetControllerMode));
+    EXPECT_EQ(frames[1].data[0], 1) << "torque";
+    expectRest({frames[2], frames[3]});
+  }
+
   int node_ = 0;
   std::unique_ptr<ODrive_Motor> motor_;
   MonotonicTime now_{1h};

@@ -157,8 +157,11 @@ TEST(RobStrideMotor, TheEndOfAScaleThatDoesNotWrapLosesTheReference) {
   bench.runAfter(milliseconds{2}, 13.0);
   EXPECT_FALSE(bench.motor.feedback().zeroed);
   EXPECT_TRUE(bench.motor.feedback().angle_at_end);
+  EXPECT_FALSE(bench.motor.setZero(0.0)) << "the next sample would lose it";
+  EXPECT_FALSE(bench.motor.feedback().zeroed);
   bench.runAfter(milliseconds{2}, 12.4);
   EXPECT_FALSE(bench.motor.feedback().angle_at_end);
+  EXPECT_TRUE(bench.motor.setZero(0.0));
 }
 
 TEST(RobStrideMotor, AtTheEndOfItsScaleAPlaceIsNotToldAndBackWithinItIs) {
@@ -194,10 +197,12 @@ TEST(RobStrideMotor, AnAbsoluteAngleInDoubtIsNoReferenceWhileItObeysButBoundsIt)
   EXPECT_FALSE(bench.motor.feedback().zeroed) << "its targets would only be damped";
   EXPECT_TRUE(bench.motor.feedback().bounds_only) << "soft limits hold";
   EXPECT_EQ(bench.motor.feedback().losses, 1U);
+  EXPECT_FALSE(bench.motor.setZero(0.0)) << "the next sample would take it back";
   bench.tick(FrameKind::kPoll);
   bench.run(1.0);
   EXPECT_TRUE(bench.motor.feedback().zeroed);
   EXPECT_FALSE(bench.motor.feedback().bounds_only);
+  EXPECT_TRUE(bench.motor.setZero(0.0));
 }
 
 TEST(RobStrideMotor, ALongSilenceLosesTheReferenceOfACyberGear) {

@@ -39,7 +39,8 @@ constexpr std::array kGroupKeys{
         .choices = returnChoices,
         .default_text = "request",
         .about = "request: every member must be enabled again. rearm_at_rest: enabled again by itself once "
-                 "all are there, within 3 s, and stand still; not after a fault, an e-stop, a disable or an "
+                 "all are there, within 3 s, and stand still, within 10 s; not after a fault, an e-stop, a "
+                 "disable or an "
                  "enable_alone."}};
 
 }  // namespace

@@ -12,6 +12,11 @@ namespace {
   return motor.status == MotorStatus::kEnabling || motor.status == MotorStatus::kActive;
 }
 
+// Off for a loss, of its own or of its group, which may bring it back by itself.
+[[nodiscard]] bool mayReturn(const MotorSnapshot& motor) noexcept {
+  return motor.stop.cause == StopCause::kSilence || motor.stop.cause == StopCause::kGroup;
+}
+
 enum class Now : std::uint8_t { kWait, kDisable, kLeave };
 
 [[nodiscard]] Now whatToDoWith(const MotorSnapshot& motor, const link::Name& client) noexcept {
@@ -44,16 +49,19 @@ void DisableAtEnd::add(const Order& order, std::uint64_t connection) {
 }
 
 void DisableAtEnd::finish(const OrderResult& result, const Snapshot& now) {
-  const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& one) {
-    return !one.enabled_at && one.order == result.id;
-  });
-  if (entry == entries_.end()) return;
-  // The scheduler knows it: a snapshot may be older than the order, or show what the order has done.
-  entry->motors &= ~result.on_before;
+  // The scheduler knows them: a snapshot may be older than the order, or show what the order has done.
+  auto enabled = result.switched_on;
   for (std::size_t i = 0; i < result.motors.size(); ++i) {
-    if (result.refused || result.motors[i] != Refusal::kNone) entry->motors.reset(i);
+    if (result.refused || result.motors[i] != Refusal::kNone) enabled.reset(i);
   }
-  entry->enabled_at = now.tick;
+  for (auto& entry : entries_) {
+    if (entry.enabled_at) {
+      entry.motors &= ~enabled;
+    } else if (entry.order == result.id) {
+      entry.motors = enabled;
+      entry.enabled_at = now.tick;
+    }
+  }
 }
 
 std::optional<Order> DisableAtEnd::due(const Snapshot& now,
@@ -68,9 +76,11 @@ std::optional<Order> DisableAtEnd::due(const Snapshot& now,
     for (std::size_t i = 0; i < now.motor_count; ++i) {
       if (!entry.motors.test(i)) continue;
       const auto& motor = now.motors[i];
-      const auto what = ended ? whatToDoWith(motor, entry.client) : Now::kWait;
-      // Off, it is nobody's: what enables it next is another request.
-      if (!isSwitchedOn(motor) || what == Now::kLeave) {
+      const bool off = !isSwitchedOn(motor);
+      // The disable of one that is off lets go of nothing, and ends the return of its group.
+      const auto what = !ended ? Now::kWait : off ? Now::kDisable : whatToDoWith(motor, entry.client);
+      // Off for another reason, it is nobody's: what enables it next is another request.
+      if ((off && !mayReturn(motor)) || what == Now::kLeave) {
         entry.motors.reset(i);
       } else if (what == Now::kDisable) {
         due.set(i);

@@ -24,12 +24,12 @@ class DisableAtEnd {
 
   /// This order asks for it.
   void add(const Order& order, std::uint64_t connection);
-  /// Motors that were on before are another's.
+  /// Motors that were on before are another's; those that another order switches on are so from then on.
   void finish(const OrderResult& result, const Snapshot& now);
 
   /// Order for the motors of connections that have ended, as soon as the last target is over. A motor that
   /// holds or brakes then does what its `on_timeout` says, and one that another client moves is that
-  /// client's.
+  /// client's. One that its group may bring back is still the client's.
   [[nodiscard]] std::optional<Order> due(const Snapshot& now,
                                          const std::function<bool(std::uint64_t)>& is_open);
   /// The order was handed over.

@@ -315,6 +315,11 @@ std::string RequestDesk::driveOutcome(const Open& open, const OrderResult& resul
     case Refusal::kNotConfirmed:
       return fmt::format("{}: {}: {}", nameOf(motor), settingAt(open.order.drive, setup, result.drive_value),
                          inWords(Refusal::kNotConfirmed, robot_.motors[motor]));
+    case Refusal::kOthersOn:
+      return fmt::format(
+          "{}: of its group, {} is on or held, and has to rest meanwhile: `rc10ctl disable {}` first, once "
+          "more to let go of what is held",
+          nameOf(motor), namesOf(result.in_the_way, " and "), namesOf(result.in_the_way, " "));
     default: return fmt::format("{}: {}", nameOf(motor), inWords(result.motors[motor], robot_.motors[motor]));
   }
 }
@@ -415,20 +420,24 @@ void RequestDesk::tellZero(double zero_deg, link::Response& response) {
 }
 
 // With the motors that are in the way by their names, and the numbers of this one.
-std::string RequestDesk::reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const {
+std::string RequestDesk::namesOf(const MotorSet& motors, std::string_view between) const {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < robot_.motors.size(); ++i) {
-    if (in_the_way.test(i)) names.emplace_back(nameOf(i));
+    if (motors.test(i)) names.emplace_back(nameOf(i));
   }
-  const std::string them = fmt::format("{}", fmt::join(names, " "));
+  return fmt::format("{}", fmt::join(names, between));
+}
+
+std::string RequestDesk::reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const {
+  const std::string them = namesOf(in_the_way, " ");
   switch (reason) {
     case Refusal::kAlone:
       return fmt::format("locked while {} is enabled alone: `rc10ctl disable {}` ends that", them, them);
     case Refusal::kOthersOn: return fmt::format("not the only one: `rc10ctl disable {}` first", them);
     case Refusal::kTogether: return fmt::format("its group is enabled all or none: name {} as well", them);
     case Refusal::kGroup:
-      return names.empty() ? inWords(reason, robot_.motors[motor])
-                           : fmt::format("of its group, {} cannot be enabled: offline or in fault", them);
+      return them.empty() ? inWords(reason, robot_.motors[motor])
+                          : fmt::format("of its group, {} cannot be enabled: offline or in fault", them);
     default: return inWords(reason, robot_.motors[motor]);
   }
 }

@@ -100,6 +100,7 @@ class RequestDesk {
   static void tellZero(double zero_deg, link::Response& response);
   void finishGains(const Open& open, const OrderResult& result, Answer& answer);
   [[nodiscard]] std::string leftGainsOf(const GainsAtEnd::Due& left) const;
+  [[nodiscard]] std::string namesOf(const MotorSet& motors, std::string_view between) const;
   [[nodiscard]] std::string reasonOf(Refusal reason, std::size_t motor, const MotorSet& in_the_way) const;
   [[nodiscard]] std::string reasons(const MotorSet& motors, const OrderResult& result) const;
   [[nodiscard]] static link::Response respond(const link::Request& request, link::ResponseStatus status,

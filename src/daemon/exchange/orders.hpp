@@ -126,8 +126,8 @@ struct OrderResult {
   bool refused = false;         ///< Not tried at all.
   std::size_t drive_value = 0;  ///< kConfigure: at which of the values it ended.
   std::array<Refusal, kMaxMotors> motors{};
-  MotorSet on_before{};   ///< kEnable, kEnableAlone: motors that were ENABLING or ACTIVE already.
-  MotorSet in_the_way{};  ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
+  MotorSet switched_on{};  ///< kEnable, kEnableAlone: motors that were off. Their drives may have refused.
+  MotorSet in_the_way{};   ///< kAlone, kOthersOn, kGroup, kTogether: which motors.
   /// kZero of one motor: Motor_Base::zeroForFile().
   double zero_deg = std::numeric_limits<double>::quiet_NaN();
   bool estop_stays = false;        ///< kClear of some motors in an e-stop.

@@ -219,9 +219,11 @@ Axis::Trip Axis::trips(bool reduced, const Tick& tick) noexcept {
 
 Axis::Trip Axis::tripsWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
   using Motion = ReducedMotion::Motion;
-  // A fallback that only resists is not ended for a speed: a load would fall.
-  const bool resisted = fallback_.acts() && resists(fallback_.kind(), motor_.driveFrames());
-  const Motion motion = !moves ? Motion::kNone : resisted ? Motion::kResisted : Motion::kLed;
+  // What only resists is not ended for a speed: a load would fall.
+  const bool brakes = !fallback_.acts() && in_force_.mode == ControlMode::kBrake;
+  const bool resists_it = brakes ? resists(FrameKind::kBrake, motor_.driveFrames())
+                                 : fallback_.acts() && resists(fallback_.kind(), motor_.driveFrames());
+  const Motion motion = !moves ? Motion::kNone : resists_it ? Motion::kResisted : Motion::kLed;
   const bool too_fast = reduced_.step(reduced, motion, motor_.feedback(), tick);
   shaper_.setCeiling(reduced_.ceilingRpm());
   if (!too_fast) return Trip::kNone;

@@ -12,6 +12,8 @@ constexpr Duration kAtRest = std::chrono::milliseconds{300};
 // Drives start anew within this after a dip of their supply. After a longer loss somebody may have his hands
 // there.
 constexpr Duration kShortLoss = std::chrono::seconds{3};
+// Time for all of a return: of a robot that rolls, or is pushed, for longer nobody expects it.
+constexpr Duration kLongestReturn = std::chrono::seconds{10};
 
 [[nodiscard]] std::int16_t firstOf(const MotorSet& motors) noexcept {
   std::int16_t first = 0;
@@ -25,9 +27,10 @@ constexpr Duration kShortLoss = std::chrono::seconds{3};
 // A motor that is enabled alone needs no group.
 Refusal Supervisor::groupRefusal(std::size_t motor, const MotorSet& asked) const noexcept {
   const auto* group = groupOf(motor);
-  if (group == nullptr || alone_ == motor) return Refusal::kNone;
-  if (group->missing(axes_).any()) return Refusal::kGroup;
+  if (group == nullptr) return Refusal::kNone;
   if (configuring_ && group->required.test(configuring_->motor)) return Refusal::kConfiguring;
+  if (alone_ == motor) return Refusal::kNone;
+  if (group->missing(axes_).any()) return Refusal::kGroup;
   if (!group->together) return Refusal::kNone;
   const auto others = group->required & ~group->on(axes_);
   if ((others & ~asked).any()) return Refusal::kTogether;
@@ -108,6 +111,10 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
 
 void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
+  if (tick.now - group.stopped > kLongestReturn) {
+    group.rearm.reset();
+    return;
+  }
   const auto needed = group.required | group.rearm;
   for (const auto motor : group.motors) {
     if (!needed.test(motor)) continue;

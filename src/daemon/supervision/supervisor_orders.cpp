@@ -176,9 +176,10 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
       case Operation::kEnable:
       case Operation::kEnableAlone: {
         const bool alone = order.operation == Operation::kEnableAlone;
-        result.on_before.set(motor, isOn(axes_[motor].status()));
+        const bool was_on = isOn(axes_[motor].status());
         const auto refusal = alone ? enableAlone(motor, tick) : enable(motor, order.motors, tick);
         result.motors[motor] = refusal;
+        result.switched_on.set(motor, !was_on && refusal == Refusal::kNone);
         result.in_the_way |= inTheWay(motor, refusal, order.motors);
         const bool enabling = axes_[motor].status() == MotorStatus::kEnabling;
         if (refusal == Refusal::kNone && enabling) waiting.set(motor);

@@ -163,9 +163,8 @@ bool CubemarsMit::setZero(double angle_deg) noexcept {
   const bool limited = std::isfinite(travel_.min_deg) || std::isfinite(travel_.max_deg);
   const double ratio = toDrive(1.0);
   const double reach_deg = springReach(angle_stiffness_) / kRadPerDeg;
-  const bool unknown = turns_unknown_ || positionCutOff();
-  if (limited && (unknown || !reachesTravel(travel_, angle_deg, lastDriveDeg(), ratio, reach_deg)))
-    return false;
+  const bool reaches = reachesTravel(travel_, angle_deg, lastDriveDeg(), ratio, reach_deg);
+  if (limited && (turns_unknown_ || !reaches)) return false;
   return CubeMars_Motor::setZero(angle_deg);
 }
 

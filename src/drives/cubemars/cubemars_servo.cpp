@@ -43,7 +43,6 @@ FrameVerdict CubemarsServo::updateFeedback(const CanFrame& frame) noexcept { ret
 bool CubemarsServo::setZero(double angle_deg) noexcept {
   const bool limited = std::isfinite(travel_.min_deg) || std::isfinite(travel_.max_deg);
   const double reach_deg = kLargestMessageDeg / own().message_deg_per_deg;
-  if (positionCutOff()) return false;
   const bool reaches = reachesTravel(travel_, angle_deg, lastDriveDeg(), toDrive(1.0), reach_deg);
   return (!limited || reaches) && CubeMars_Motor::setZero(angle_deg);
 }

@@ -149,7 +149,8 @@ void DJI_Motor::forgetReference() noexcept {
 void DJI_Motor::restoreReference(ControlMode followed) noexcept {
   // Without a travel its turn is that of before: no jump.
   const bool would_jump = isAngle(followed) && travel_.bothEnds();
-  if (!absolute_ || forgotten_ || !encoder_.referenceLost() || would_jump) return;
+  const bool tells_it = absolute_ && !zero_at_power_on_;
+  if (!tells_it || forgotten_ || !encoder_.referenceLost() || would_jump) return;
   findTurn(feedback_.total_angle_deg, feedback_.total_angle_deg);
   encoder_.acknowledgeLoss();
   updateAngles();
@@ -204,7 +205,7 @@ void DJI_Motor::update(const Tick& tick) noexcept {
     case ControlMode::kVoltage: {
       loops_.reset();
       const float ff = command_ == DjiCommand::kCurrent ? wanted.torque_ff_nm / torque_nm_per_a_ : 0.0F;
-      const float effort = saturate(static_cast<float>(wanted.value)) + saturate(ff);
+      const float effort = saturate(nearFloat(wanted.value)) + saturate(ff);
       command_value_ = std::clamp(effort, -limit, limit);
       if (command_value_ != effort) limits_ |= kLimitCurrent;
       break;

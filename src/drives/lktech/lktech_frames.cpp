@@ -85,8 +85,9 @@ Status decodeStatus(std::span<const std::uint8_t> payload) noexcept {
           .errors = payload[7]};
 }
 
-std::int32_t decodeAngle(std::span<const std::uint8_t> payload) noexcept {
-  return readLittleEndian<std::int32_t>(payload, 1);
+std::int64_t decodeAngle(std::span<const std::uint8_t> payload) noexcept {
+  const auto with_code = readLittleEndian<std::uint64_t>(payload, 0);
+  return static_cast<std::int64_t>(with_code) >> 8U;
 }
 
 }  // namespace rc10::lktech

@@ -67,6 +67,6 @@ struct Status {
 [[nodiscard]] Status decodeStatus(std::span<const std::uint8_t> payload) noexcept;
 
 /// In 0.01 degrees of the rotor. The document has 7 bytes, but firmware is known that fills only 4.
-[[nodiscard]] std::int32_t decodeAngle(std::span<const std::uint8_t> payload) noexcept;
+[[nodiscard]] std::int64_t decodeAngle(std::span<const std::uint8_t> payload) noexcept;
 
 }  // namespace rc10::lktech

@@ -139,13 +139,13 @@ void LKTech_Motor::takeStatus(const CanFrame& frame) noexcept {
 }
 
 void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
-  const std::int32_t raw = lktech::decodeAngle(frame.payload());
+  const std::int64_t raw = lktech::decodeAngle(frame.payload());
   // A copy of a request has the angle 0. A drive at 0 sends it in every reply, a copy comes once.
   zero_angles_ = lktech::looksLikeCommand(frame.payload()) ? zero_angles_ + 1 : 0;
   if (zero_angles_ > 0 && zero_angles_ < kZeroAnglesBelieved) return;
   if (!encoder_) return;
   const double angle_deg = static_cast<double>(raw) * lktech::kDegPerRaw / traits().gear_ratio;
-  // 32 bits of the rotor's angle end somewhere.
+  // Firmware that counts in 32 bits goes round at their end.
   const double reach_deg = 4294967296.0 * lktech::kDegPerRaw / traits().gear_ratio;
   const double off_deg = shortestWay(position_deg_ + shift_deg_, angle_deg, reach_deg);
   if (!counted_ || std::abs(off_deg) > 180.0) {

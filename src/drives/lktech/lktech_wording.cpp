@@ -59,7 +59,7 @@ std::string lktechReply(int id, std::span<const std::uint8_t> payload) {
     }
     case Code::kAngle:
       return FrameWords{id, "angle"}
-          .add("rotor", lktech::decodeAngle(payload) * lktech::kDegPerRaw, "deg")
+          .add("rotor", static_cast<double>(lktech::decodeAngle(payload)) * lktech::kDegPerRaw, "deg")
           .take();
     default: return FrameWords{id, "reply"}.code("code", payload[0]).take();
   }

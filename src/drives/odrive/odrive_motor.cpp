@@ -319,6 +319,11 @@ std::size_t ODrive_Motor::packCommand(const Tick& tick, std::span<CanFrame> out)
   } else if (enabling() && (enabling_.at(Step::kToClosedLoop) || enabling_.done())) {
     frames.add(input_);  // 0 N·m: it also keeps the drive's watchdog content.
   } else {
+    // While no torque is possible: a drive that misses the frames of closed loop follows no old input.
+    if (enabling() && ask_) {
+      frames.add(odrive::setInputVel(node_, 0.0F, 0.0F));
+      frames.add(odrive::setControllerMode(node_, odrive::ControlMode::kTorque));
+    }
     std::array<CanFrame, 2> rest{};
     for (const auto& frame : std::span{rest}.first(packRest(rest))) frames.add(frame);
   }

@@ -216,7 +216,8 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
 }
 
 bool RobStride_Motor::setZero(double angle_deg) noexcept {
-  if (feedback_.angle_at_end) return false;
+  // It would be followed nowhere until the drive is enabled anew, in another count perhaps.
+  if (angles_in_doubt_ && obeying()) return false;
   const double reach_rad = springReachRad(scaleEndRad(), limitNm(), angle_stiffness_);
   const double here_rad = position_rad_ + scale_offset_rad_;
   const bool reaches =

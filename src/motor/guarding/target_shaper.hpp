@@ -44,7 +44,8 @@ struct ShapingConfig {
 };
 
 /// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle
-/// limits that still allow moving back. Soft limits act while the angle is referenced. After enabling the
+/// limits that still allow moving back. Soft limits act while the angle is referenced, and with
+/// MotorFeedback::bounds_only. After enabling the
 /// target in force goes from what is measured to what is asked: a client may have sent for long. What holds a
 /// load then is not let go: the target begins at the angle and with the effort that a fallback holds.
 ///

@@ -38,7 +38,7 @@ class DisableAtEndTest : public ::testing::Test {
     at_end.add(order, kPage);
     OrderResult result;
     result.id = order.id;
-    result.on_before = on_before;
+    result.switched_on = motors & ~on_before;
     if (offline) result.motors[*offline] = Refusal::kOffline;
     at_end.finish(result, *now);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -93,6 +93,39 @@ TEST_F(DisableAtEndTest, AMotorThatWasOffSinceIsNotItsOwn) {
   enable(MotorSet{0b01});
   motor(kLeft).status = MotorStatus::kReady;
   EXPECT_FALSE(due(true));
+  motor(kLeft).status = MotorStatus::kActive;
+  EXPECT_FALSE(due());
+}
+
+TEST_F(DisableAtEndTest, AMotorThatItsGroupMayBringBackIsStillItsOwn) {
+  for (const auto cause : {StopCause::kSilence, StopCause::kGroup}) {
+    motor(kLeft).status = MotorStatus::kReady;
+    enable(MotorSet{0b01});
+    motor(kLeft).status = MotorStatus::kReady;
+    motor(kLeft).stop.cause = cause;
+    motor(kLeft).acting = Acting::kBrake;
+    EXPECT_FALSE(due(true));
+    const auto while_off = due();
+    ASSERT_TRUE(while_off) << "which ends the return";
+    EXPECT_EQ(while_off->asked, Asked::kUnasked) << "and lets go of nothing";
+    motor(kLeft).status = MotorStatus::kActive;
+    motor(kLeft).acting = Acting::kNothing;
+    const auto returned = due();
+    ASSERT_TRUE(returned);
+    at_end.taken(*returned);
+    motor(kLeft).stop = {};
+  }
+}
+
+TEST_F(DisableAtEndTest, AMotorThatAnotherRequestBringsBackIsThatOnes) {
+  enable(MotorSet{0b01});
+  motor(kLeft).status = MotorStatus::kReady;
+  motor(kLeft).stop.cause = StopCause::kGroup;
+  EXPECT_FALSE(due(true));
+  OrderResult result;
+  result.id = 8;
+  result.switched_on = MotorSet{0b01};
+  at_end.finish(result, *now);
   motor(kLeft).status = MotorStatus::kActive;
   EXPECT_FALSE(due());
 }

@@ -167,13 +167,47 @@ TEST_P(LostWhenDamped, TurnsNoWholeTurnsAfterIt) { loseUnder(FallbackAction::kDa
 
 TEST_P(LostUnderAJoint, TurnsNoWholeTurnsThatItsProfileWouldLead) { loseUnder(FallbackAction::kCoast, true); }
 
-constexpr AbsoluteEncoder kManyWrapsAway[] = {
-    {"DamiaoFar", "model: DM4310, id: 1, master_id: 17, control: position_velocity", 47 * 360.0}};
-
 AbsoluteEncoder encoderOf(std::string_view name) {
   return *std::find_if(std::begin(kAbsoluteEncoders), std::end(kAbsoluteEncoders),
                        [name](const AbsoluteEncoder& each) { return each.name == name; });
 }
+
+// What holds it spares it the sequence of enabling, and so its count is not asked for.
+TEST(LostAngleOfARobStride, StaysInDoubtThroughAHoldAndEndsWithTheDisableThatLetsGo) {
+  auto config = robotOfArm(encoderOf("RobStride"), ", feedback_timeout_ms: 400, on_disable: hold", 0.0, "");
+  VirtualRobot robot(config);
+  const auto enable = [&robot] {
+    for (int i = 0; i < 4 && robot.motor(kArm).status != MotorStatus::kActive; ++i) {
+      (void)robot.order(Operation::kEnable);
+      robot.run(500);
+    }
+    ASSERT_EQ(robot.motor(kArm).status, MotorStatus::kActive);
+  };
+  robot.run(500);
+  enable();
+  robot.simBus().silence(0, true);
+  robot.run(230);
+  robot.simBus().silence(0, false);
+  robot.run(50);
+  ASSERT_EQ(robot.motor(kArm).status, MotorStatus::kActive);
+  EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
+  (void)robot.order(Operation::kDisable);
+  robot.run(50);
+  ASSERT_EQ(robot.motor(kArm).acting, Acting::kHold);
+  enable();
+  robot.run(50);
+  EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
+  (void)robot.order(Operation::kDisable);
+  (void)robot.order(Operation::kDisable);
+  robot.run(50);
+  ASSERT_EQ(robot.motor(kArm).acting, Acting::kNothing);
+  enable();
+  robot.run(50);
+  EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
+}
+
+constexpr AbsoluteEncoder kManyWrapsAway[] = {
+    {"DamiaoFar", "model: DM4310, id: 1, master_id: 17, control: position_velocity", 47 * 360.0}};
 
 std::string nameOf(const ::testing::TestParamInfo<LostAngle::ParamType>& each) {
   return std::string{std::get<0>(each.param).name} + std::get<1>(each.param).name;

@@ -295,7 +295,7 @@ TEST_P(StallTest, AShoveBeforeItIsLetGoIsNoRunaway) {
 TEST_P(StallTest, LettingAHeavyLoadDownAsAskedIsNoRunaway) {
   OneMotor motor = motorWith("");
   if (!traitsOf(motor).limit_by_report || !traitsOf(motor).modes.contains(ControlMode::kVelocity)) return;
-  load(motor, &sim::MotorLoad::inertia_kg_m2, 0.05F);
+  load(motor, &sim::MotorLoad::inertia_kg_m2, 0.05);
   load(motor, &sim::MotorLoad::load_torque_nm, -0.97 * fullNm(motor));
   int braked = 0;
   for (int i = 0; i < 3000; ++i) {

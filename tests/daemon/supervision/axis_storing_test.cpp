@@ -138,7 +138,8 @@ TEST(StoringDrives, OfAGroupAreConfiguredOnlyWhileTheOthersRestAndKeepThemFromBe
   }
   robot.orderFor(wheel, Operation::kDisable);
   EXPECT_FALSE(configure()) << "it has begun";
-  EXPECT_EQ(robot.orderFor(wheel, Operation::kEnable).motors[1], Refusal::kConfiguring);
+  for (const auto enable : {Operation::kEnable, Operation::kEnableAlone})
+    EXPECT_EQ(robot.orderFor(wheel, enable).motors[1], Refusal::kConfiguring);
 }
 
 TEST(StoringDrives, DelayTheReturnOfTheirGroupAndDoNotPreventIt) {

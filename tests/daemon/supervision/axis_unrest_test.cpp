@@ -180,6 +180,37 @@ TEST_P(DraggedInReducedMode, NoPushGoesOnAndNoResistanceEnds) {
   }
 }
 
+class BrakedInReducedMode : public DraggedInReducedMode {};
+
+TEST_P(BrakedInReducedMode, ATargetThatCanOnlyOpposeMotionGoesOnAsItsFallbackWould) {
+  const auto& dragged = GetParam();
+  VirtualRobot robot(onASlope(
+      "reduced_velocity_rpm: 10, reduced_within_ms: 500, zero: power_on, runaway_rpm: 100, on_timeout: " +
+          std::string{dragged.keys},
+      kModeInput, dragged.motor, "0"));
+  enable(robot);
+  runReduced(robot, 5, Target{.mode = ControlMode::kBrake});
+  robot.simBus().drive(kWheel).physics().take({.by_deg = -1500.0, .speed_rpm = 35.0, .torque_nm = 500.0});
+  runReduced(robot, 2500, Target{.mode = ControlMode::kBrake});
+  const auto& wheel = robot.motor(kWheel);
+  const bool goes_on = dragged.left != Acting::kNothing;
+  EXPECT_NEAR(wheel.feedback.velocity_rpm, -35.0F, 2.0F);
+  EXPECT_EQ(wheel.status, goes_on ? MotorStatus::kActive : MotorStatus::kFault);
+  EXPECT_EQ(wheel.fault, goes_on ? FaultCode::kNone : FaultCode::kReducedSpeed);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Families, BrakedInReducedMode,
+    ::testing::Values(
+        Dragged{"model: M3508, id: 1", "brake, current_limit_a: 1", Acting::kNothing},
+        Dragged{"model: DM4310, id: 2, master_id: 18", "brake, current_limit_a: 0.5", Acting::kBrake},
+        Dragged{"model: RS00, id: 3", "brake, current_limit_a: 1", Acting::kBrake},
+        Dragged{"model: AK80-9, id: 5", "brake, brake_current_a: 1", Acting::kBrake},
+        Dragged{"model: ODrive_S1, id: 8, torque_constant_nm_per_a: 0.05, velocity_limit_rpm: 600",
+                "brake, current_limit_a: 5", Acting::kNothing},
+        Dragged{"model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 100, feedback_hz: 500",
+                "brake, brake_current_a: 1", Acting::kBrake}));
+
 INSTANTIATE_TEST_SUITE_P(
     Families, DraggedInReducedMode,
     ::testing::Values(

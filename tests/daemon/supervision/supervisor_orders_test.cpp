@@ -65,7 +65,7 @@ TEST_F(OpenRequestsTest, OneMoreIsRefusedAndEnablesNothing) {
   EXPECT_TRUE(last->refused);
 }
 
-TEST_F(OpenRequestsTest, TheAnswerSaysWhichMotorsWereOnBefore) {
+TEST_F(OpenRequestsTest, TheAnswerSaysWhichMotorsItHasSwitchedOn) {
   askToEnable(kLeft, 2, 1);
   robot.run(5);
   Order both;
@@ -74,11 +74,11 @@ TEST_F(OpenRequestsTest, TheAnswerSaysWhichMotorsWereOnBefore) {
   both.motors = MotorSet{0b11};
   ASSERT_TRUE(robot.exchange().orders.push(both));
   robot.run(5);
-  std::map<std::uint64_t, MotorSet> on_before;
-  for (const auto& answer : answers()) on_before[answer.id] = answer.on_before;
-  EXPECT_EQ(on_before[1], MotorSet{});
-  EXPECT_EQ(on_before[2], MotorSet{0b01}) << "it was ENABLING";
-  EXPECT_EQ(on_before[3], MotorSet{0b01});
+  std::map<std::uint64_t, MotorSet> switched_on;
+  for (const auto& answer : answers()) switched_on[answer.id] = answer.switched_on;
+  EXPECT_EQ(switched_on[1], MotorSet{0b01});
+  EXPECT_EQ(switched_on[2], MotorSet{}) << "it was ENABLING";
+  EXPECT_EQ(switched_on[3], MotorSet{0b10});
 }
 
 /// Requests that wait for nothing.

@@ -1,0 +1,56 @@
+// Groups that are enabled again by themselves: only while somebody still expects it.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "config/load_config.hpp"
+#include "daemon/virtual_robot.hpp"
+
+namespace rc10::test::supervisor_return_test {
+namespace {
+
+/// Two wheels, on a bus each. Seconds for which one is pushed.
+class ReturnTest : public ::testing::TestWithParam<int> {
+ protected:
+  ReturnTest() : robot(configured()) {}
+  static RobotConfig configured() {
+    const auto outcome = parseRobotConfig(
+        "robot: cart\nrealtime: preferred\nbuses:\n"
+        "  - {name: a, type: sim, motors: [{name: left, model: M3508, id: 1}]}\n"
+        "  - {name: b, type: sim, motors: [{name: right, model: M3508, id: 1}]}\n"
+        "groups: [{name: wheels, motors: [left, right], on_return: rearm_at_rest}]\n",
+        "cart.yaml");
+    EXPECT_TRUE(outcome.config) << outcome.errorText();
+    return outcome.config.value_or(twoWheelsAndYaw());
+  }
+
+  VirtualRobot robot;
+};
+
+TEST_P(ReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.run(50);
+  robot.freezeBus(1, true);
+  robot.run(100);
+  robot.freezeBus(1, false);
+  // It is pushed.
+  auto& shaft = robot.simBus(0).drive(0).physics();
+  shaft.take({.by_deg = 360.0 * GetParam(), .speed_rpm = 60.0, .torque_nm = 500.0});
+  robot.run(5);
+  while (shaft.held()) {
+    robot.run(1);
+    if (GetParam() > 10) {
+      ASSERT_EQ(robot.motor(1).status, MotorStatus::kReady);
+    }
+  }
+  robot.run(4000);
+  const auto expected = GetParam() < 10 ? MotorStatus::kActive : MotorStatus::kReady;
+  for (std::size_t motor = 0; motor < 2; ++motor) EXPECT_EQ(robot.motor(motor).status, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pushed, ReturnTest, ::testing::Values(2, 11, 30),
+                         [](const auto& each) { return "For" + std::to_string(each.param) + "Seconds"; });
+
+}  // namespace
+}  // namespace rc10::test::supervisor_return_test
