@@ -33,6 +33,10 @@ bool leavesActive(const link::Event& event) {
           (change.starts_with("ENABLING -> ") && !change.starts_with("ENABLING -> ACTIVE")));
 }
 
+bool leavesRun(const link::Event& event) {
+  return EventCode{event.code} == EventCode::kRobotState && event.text.view().starts_with("RUN -> ");
+}
+
 std::string refusalText(const link::Event& event, std::string_view motor, std::string_view client) {
   const auto code = EventCode{event.code};
   const bool of_motor = code == EventCode::kSetpointSkipped || code == EventCode::kNotOwner;

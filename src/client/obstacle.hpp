@@ -13,6 +13,8 @@ namespace rc10::client {
 
 /// A motor ceases to obey: it was ACTIVE, or about to be.
 [[nodiscard]] bool leavesActive(const link::Event& event);
+/// The robot stops: an e-stop, or the end of rc10d.
+[[nodiscard]] bool leavesRun(const link::Event& event);
 
 /// Text of an event that tells why targets of the client for the motor do not act; empty: another event.
 [[nodiscard]] std::string refusalText(const link::Event& event, std::string_view motor,

@@ -78,6 +78,11 @@ def outputs(daemon: Daemon) -> dict[str, float | None]:
     return found
 
 
+def owner(daemon: Daemon) -> str:
+    found: str = json.loads(daemon.must("modules", "--json"))["modules"][0]["owner"]
+    return found
+
+
 def release(daemon: Daemon, *safe: str) -> None:
     """After a start a field obeys once it was commanded its safe value."""
     daemon.wait_state(lambda _: outputs(daemon)["connected"] == 1, "the port is there")
@@ -138,10 +143,13 @@ def test_a_signal_that_its_computer_holds_up_goes_on(claw: Daemon) -> None:
 
 
 def test_an_estop_sends_the_safe_value_and_a_clear_alone_moves_nothing(claw: Daemon) -> None:
-    with claw.drive("signal", "claw", "angle_deg=30", "--for", "60s"):
+    with claw.drive("signal", "claw", "angle_deg=30", "--for", "60s") as signalling:
         claw.wait_state(lambda _: outputs(claw)["measured_deg"] == pytest.approx(30), "it moves")
         claw.must("estop")
         claw.wait_state(lambda _: outputs(claw)["measured_deg"] == pytest.approx(0), "it is safe")
+        assert signalling.wait() == 1
+    with claw.drive("signal", "claw", "angle_deg=30", "--for", "60s"):
+        claw.wait_state(lambda _: owner(claw) == "rc10ctl", "it is commanded in the e-stop")
         claw.must("clear")
         assert outputs(claw)["angle_deg"] == 0
 

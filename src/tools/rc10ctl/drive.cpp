@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/printable.hpp"
-#include "client/catch_up.hpp"
+#include "client/command_stream.hpp"
 #include "client/obstacle.hpp"
 #include "client/quantity_text.hpp"
 #include "client/request_call.hpp"
@@ -24,8 +24,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// After a longer pause (Ctrl-Z, a terminal that is held) nobody expects that the motor goes on.
-constexpr Duration kLongestPause = std::chrono::seconds{2};
 // A lease that is let go ends within a tick or two; one that is not, within its validity.
 constexpr Duration kReleasing = std::chrono::milliseconds{2 * kValidityMs};
 // States come often enough to show it within this time, though not soon enough to rely on it.
@@ -73,7 +71,8 @@ class Driver {
         order_(order),
         feed_(rc10d),
         name_(order.setpoint.motor.view()),
-        setpoint_(order.setpoint) {
+        setpoint_(order.setpoint),
+        stream_({name_}, kSendPeriod) {
     command_.client = kClientName;
     command_.session = randomSession();
     command_.priority = order.priority;
@@ -112,7 +111,6 @@ class Driver {
 
   std::string sendOn(Progress& progress) {
     const auto start = steady_clock::now();
-    auto next = start;
     while (!interrupted()) {
       if (!feed_.pump()) return rc10dEnded().message;
       hearEvents();
@@ -120,9 +118,7 @@ class Driver {
       if (auto why = refused(); !why.empty()) return why;
       const auto now = steady_clock::now();
       if (now - start >= order_.time) break;
-      const bool caught_up = catch_up_.done(now, feed_.state()->mono_us);
-      if (now >= next && !caught_up) next = now + kSendPeriod;
-      if (now >= next) {
+      if (stream_.due(now, feed_.state()->mono_us)) {
         sent_before_ = setpoint_.target;
         if (order_.steer) {
           if (const auto end = order_.steer(setpoint_, *feed_.state())) {
@@ -132,13 +128,12 @@ class Driver {
         }
         if (!send(setpoint_)) return rc10dEnded().message;
         unheeded_.sent();
-        sent_ = now;
-        next = std::max(next + kSendPeriod, now);
+        stream_.sent(now);
       }
       // After sending, for a terminal that is held keeps it waiting: what it sends has just been judged.
       showNotes(progress);
       progress.show(line(), false);
-      waitReadable(rc10d_, std::min(next, start + order_.time) - steady_clock::now());
+      waitReadable(rc10d_, std::min(stream_.next(), start + order_.time) - steady_clock::now());
     }
     progress.show(line(), true);
     // Too short a time to be sure about it otherwise.
@@ -150,16 +145,15 @@ class Driver {
   // that was stopped and enabled between two states is known by its events.
   std::string ended() {
     std::string why = trouble();
-    if (why.empty()) why = stopped_;
-    if (why.empty() && sent_ && steady_clock::now() - *sent_ > kLongestPause)
-      why = "rc10ctl was held up for more than 2 s: the target has ended, and is not sent again";
+    if (why.empty()) why = stream_.ended(steady_clock::now());
     over_ = !why.empty();
     return why;
   }
 
   // Later, what holds the motor is its on_timeout.
   bool acts() const {
-    return sent_ && steady_clock::now() - *sent_ < std::chrono::milliseconds{command_.validity_ms};
+    const auto sent = stream_.sentAt();
+    return sent && steady_clock::now() - *sent < std::chrono::milliseconds{command_.validity_ms};
   }
 
   // Coasts, and then gives the motor back: while a target is valid, a coasting one too, nobody else of our
@@ -254,8 +248,7 @@ class Driver {
   void hearEvents() {
     for (const auto& event : feed_.takeEvents()) {
       if (order_.hear && event.source.view() == name_) order_.hear(event);
-      if (sent_ && event.source.view() == name_ && client::leavesActive(event))
-        stopped_ = "motor '" + name_ + "': " + printable(event.text.view());
+      stream_.hear(event);
       // refused() reports it in the end, if the target is not in force by then.
       if (auto why = client::refusalText(event, name_, kClientName); !why.empty()) {
         refusal_ = std::move(why);
@@ -290,11 +283,9 @@ class Driver {
   Target sent_before_;              // the one before the last, which the state may still show
   std::string refusal_;             // last refusal by rc10d of a target, in words
   std::vector<std::string> notes_;  // to be shown
-  std::string stopped_;             // event by which it ceased to obey
   bool taken_ = false;              // has been in force
   bool over_ = false;               // its targets are
-  std::optional<steady_clock::time_point> sent_;
-  client::CatchUp catch_up_;
+  client::CommandStream stream_;
   Unheeded unheeded_;
   link::Command command_;
 };

@@ -12,6 +12,7 @@
 #include "app/event_code.hpp"
 #include "app/nearest.hpp"
 #include "app/printable.hpp"
+#include "client/command_stream.hpp"
 #include "client/duration_text.hpp"
 #include "client/module_text.hpp"
 #include "client/obstacle.hpp"
@@ -72,26 +73,6 @@ std::vector<std::string_view> viewsOf(std::span<const link::Name> names) {
   return views;
 }
 
-/// Reason why the module does not do what it is told; empty if it does. `certain`: its state shows our inputs
-/// by now, if it takes them. `refusal`: rc10d's last word about inputs that it refused, kept between calls.
-std::string whyNotObeyed(const client::ModuleView& module, Feed& feed, bool certain, std::string& refusal) {
-  const std::string name = printable(module.name.view());
-  for (const auto& event : feed.takeEvents()) {
-    if (auto why = client::refusalText(event, {}, kClientName); !why.empty()) refusal = std::move(why);
-    if (event.code == static_cast<std::int32_t>(EventCode::kModuleRefused) &&
-        event.source.view() == module.name.view())
-      return "module '" + name + "': " + printable(event.text.view()) +
-             ": `rc10ctl watch` shows the owner of each motor; stop that program";
-  }
-  const auto owner = module.state.owner.view();
-  if (!certain || owner == kClientName) return {};
-  if (owner.empty())
-    return "module '" + name + "' takes none of these inputs" +
-           (refusal.empty() ? ": `rc10ctl stats` shows what was refused" : " (" + refusal + ")");
-  return "module '" + name + "' is commanded by '" + printable(owner) +
-         "': stop that program, or take over with a higher --priority";
-}
-
 /// The motors that the module drives, by the file with which the robot started; none if that cannot be read.
 std::vector<std::size_t> motorsOf(const Global& global, const link::Welcome& welcome,
                                   std::string_view module) {
@@ -114,12 +95,14 @@ std::string whyAtRest(const client::ModuleView& module, const std::vector<std::s
   if (state == nullptr) return {};
   std::string ready;
   std::string other;
+  const bool runs = state->robot_state == RobotStatus::kRun;
   for (const auto motor : motors) {
     const auto& reading = state->motors[motor];
     const std::string name = printable(welcome.motors[motor].name.view());
     const auto why = client::obstacle(*state, name, reading);
     if (why.empty()) continue;
-    if (reading.status == MotorStatus::kReady)
+    const bool faulty = reading.status == MotorStatus::kOffline || reading.status == MotorStatus::kFault;
+    if (runs ? reading.status == MotorStatus::kReady : !faulty)
       ready += " " + name;
     else if (other.empty())
       other = why;
@@ -127,7 +110,7 @@ std::string whyAtRest(const client::ModuleView& module, const std::vector<std::s
   if (ready.empty() && other.empty()) return {};
   const std::string what =
       "module '" + printable(module.name.view()) + "' takes its inputs and moves nothing: ";
-  if (state->robot_state != RobotStatus::kRun)
+  if (!runs)
     return what + "the robot is in " + toString(state->robot_state) +
            ": `rc10ctl clear`, then `rc10ctl enable" + ready + "`";
   return what + (other.empty() ? "not enabled: `rc10ctl enable" + ready + "`" : other);
@@ -159,43 +142,130 @@ std::string whySignalsUnfit(const link::Signals& message, const std::vector<clie
          printable(didYouMean(message.module.view(), names));
 }
 
-ExitCode repeat(const Global& global, LinkClient& rc10d, link::Signals& message, Duration time, Feed& feed) {
-  const auto module = std::find_if(feed.modules().begin(), feed.modules().end(), [&](const auto& each) {
-    return each.name.view() == message.module.view();
-  });
-  const auto start = steady_clock::now();
-  auto next = start;
-  bool obeyed = false;
-  std::string refusal;
-  Unheeded unheeded;
-  while (!interrupted() && steady_clock::now() - start < time) {
-    if (const auto now = steady_clock::now(); now >= next) {
-      message.received_ns = 0;  // the present time
-      ++message.seq;
-      if (rc10d.send(message) == LinkClient::SendStatus::kClosed)
-        return complain(rc10dEnded(), ExitCode::kFailed);
-      unheeded.sent();
-      next = std::max(next + kSendPeriod, now);
-    }
-    waitReadable(rc10d, std::min(next, start + time) - steady_clock::now());
-    if (!feed.pump()) return complain(rc10dEnded(), ExitCode::kFailed);
-    if (module->state.owner.view() == kClientName) {
-      obeyed = true;
-      unheeded.heeded();
-    }
-    if (const auto why = whyNotObeyed(*module, feed, unheeded.tooOften(), refusal); !why.empty())
+/// Gives a module its inputs for a while.
+class Signalling {
+ public:
+  Signalling(const Global& global, LinkClient& rc10d, Feed& feed, link::Signals& message)
+      : rc10d_(rc10d),
+        feed_(feed),
+        message_(message),
+        module_(*std::find_if(feed.modules().begin(), feed.modules().end(),
+                              [&](const auto& each) { return each.name.view() == message.module.view(); })),
+        name_(printable(module_.name.view())),
+        motors_(motorsOf(global, rc10d.welcome(), module_.name.view())),
+        stream_(namesOf(motors_), kSendPeriod) {}
+
+  ExitCode run(const Global& global, Duration time) {
+    if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
+    runs_ = feed_.state()->robot_state == RobotStatus::kRun;
+    // It would move them as soon as somebody clears and enables.
+    if (const auto why = runs_ ? std::string{} : atRest(); !why.empty())
       return complain({why}, ExitCode::kFailed);
+    for (const auto motor : motors_) {
+      if (feed_.state()->motors[motor].status == MotorStatus::kActive) active_.push_back(motor);
+    }
+    std::string why = sendOn(time);
+    if (why.empty() && !interrupted()) {
+      hearEvents();
+      why = disobeyed(!obeyed_);
+      if (why.empty()) why = atRest();
+    }
+    if (!why.empty()) return complain({why}, ExitCode::kFailed);
+    printModules(global, {module_});
+    return ExitCode::kOk;
   }
-  if (const auto why = whyNotObeyed(*module, feed, true, refusal); !why.empty() && !obeyed && !interrupted())
-    return complain({why}, ExitCode::kFailed);
-  const auto motors = motorsOf(global, rc10d.welcome(), message.module.view());
-  if (const auto there = feed.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
-  if (const auto why = whyAtRest(*module, motors, rc10d.welcome(), feed.state());
-      !why.empty() && !interrupted())
-    return complain({why}, ExitCode::kFailed);
-  printModules(global, {*module});
-  return ExitCode::kOk;
-}
+
+ private:
+  // Until the time is over or Ctrl-C. Returns what went wrong, or nothing.
+  std::string sendOn(Duration time) {
+    const auto start = steady_clock::now();
+    while (!interrupted()) {
+      if (!feed_.pump()) return rc10dEnded().message;
+      hearEvents();
+      if (auto why = ended(); !why.empty()) return why;
+      if (auto why = disobeyed(unheeded_.tooOften()); !why.empty()) return why;
+      const auto now = steady_clock::now();
+      if (now - start >= time) break;
+      if (stream_.due(now, feed_.state()->mono_us)) {
+        message_.received_ns = 0;  // the present time
+        ++message_.seq;
+        if (rc10d_.send(message_) == LinkClient::SendStatus::kClosed) return rc10dEnded().message;
+        unheeded_.sent();
+        stream_.sent(now);
+      }
+      waitReadable(rc10d_, std::min(stream_.next(), start + time) - steady_clock::now());
+    }
+    return {};
+  }
+
+  void hearEvents() {
+    for (const auto& event : feed_.takeEvents()) {
+      stream_.hear(event);
+      if (auto why = client::refusalText(event, {}, kClientName); !why.empty()) refusal_ = std::move(why);
+      if (event.code == static_cast<std::int32_t>(EventCode::kModuleRefused) &&
+          event.source.view() == module_.name.view())
+        module_refused_ = "module '" + name_ + "': " + printable(event.text.view()) +
+                          ": `rc10ctl watch` shows the owner of each motor; stop that program";
+    }
+  }
+
+  // Reason why its inputs are over: nothing that was stopped may begin anew by them.
+  std::string ended() const {
+    std::string why = stopped();
+    if (why.empty()) why = stream_.ended(steady_clock::now());
+    return why.empty() ? why : "the inputs of module '" + name_ + "' have ended: " + why;
+  }
+
+  // Empty, or what has stopped since the beginning, by the newest state.
+  std::string stopped() const {
+    const auto& state = *feed_.state();
+    for (const auto motor : active_) {
+      const std::string name = printable(rc10d_.welcome().motors[motor].name.view());
+      if (auto why = client::obstacle(state, name, state.motors[motor]); !why.empty()) return why;
+    }
+    if (!runs_ || state.robot_state == RobotStatus::kRun) return {};
+    return std::string{"the robot is in "} + toString(state.robot_state) + ": `rc10ctl clear`";
+  }
+
+  // Reason why the module does not do what it is told; empty if it does. `certain`: its state shows our
+  // inputs by now, if it takes them.
+  std::string disobeyed(bool certain) {
+    const auto owner = module_.state.owner.view();
+    if (owner == kClientName) {
+      obeyed_ = true;
+      unheeded_.heeded();
+    }
+    if (!module_refused_.empty()) return module_refused_;
+    if (!certain || owner == kClientName) return {};
+    if (owner.empty())
+      return "module '" + name_ + "' takes none of these inputs" +
+             (refusal_.empty() ? ": `rc10ctl stats` shows what was refused" : " (" + refusal_ + ")");
+    return "module '" + name_ + "' is commanded by '" + printable(owner) +
+           "': stop that program, or take over with a higher --priority";
+  }
+
+  std::string atRest() const { return whyAtRest(module_, motors_, rc10d_.welcome(), feed_.state()); }
+
+  std::vector<std::string> namesOf(const std::vector<std::size_t>& motors) const {
+    std::vector<std::string> names;
+    for (const auto motor : motors) names.emplace_back(rc10d_.welcome().motors[motor].name.view());
+    return names;
+  }
+
+  LinkClient& rc10d_;
+  Feed& feed_;
+  link::Signals& message_;
+  const client::ModuleView& module_;
+  std::string name_;
+  std::vector<std::size_t> motors_;  // as far as the file can be read
+  std::vector<std::size_t> active_;  // those that were, at the beginning
+  bool runs_ = false;                // the robot did
+  client::CommandStream stream_;
+  Unheeded unheeded_;
+  bool obeyed_ = false;
+  std::string refusal_;         // last word of rc10d about inputs that it refused
+  std::string module_refused_;  // its word about the module's targets
+};
 
 ExitCode signal(const Global& global, const SignalOptions& options) {
   auto message = signalsFrom(options);
@@ -210,7 +280,7 @@ ExitCode signal(const Global& global, const SignalOptions& options) {
   if (const auto there = feed.awaitModules(); !there) return complain(there.error(), ExitCode::kFailed);
   if (const auto why = whySignalsUnfit(*message, feed.modules()); !why.empty())
     return complain({why}, ExitCode::kFailed);
-  return repeat(global, *rc10d, *message, *time, feed);
+  return Signalling(global, *rc10d, feed, *message).run(global, *time);
 }
 
 }  // namespace
