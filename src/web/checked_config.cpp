@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/json_line.hpp"
+#include "config/check/untested_loops.hpp"
 #include "config/load_config.hpp"
 #include "config/report/report.hpp"
 #include "config/report/robot_json.hpp"
@@ -28,7 +29,8 @@ Json checkedMotorJson(const MotorConfig& motor, const BusLoad& load) {
           {"zero", motorZeroText(motor)},
           {"on_timeout", word(motor.fallback.on_timeout)},
           {"on_disable", word(motor.fallback.on_disable)},
-          {"on_estop", motorEstopText(motor)}};
+          {"on_estop", motorEstopText(motor)},
+          {"untested_loops", untestedLoops(motor)}};
 }
 
 Json checkedBusJson(const BusConfig& bus, int rate_hz) {

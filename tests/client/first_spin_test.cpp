@@ -1,6 +1,8 @@
 #include "client/first_spin.hpp"
 
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <limits>
 
@@ -16,32 +18,48 @@ using Double = std::numeric_limits<double>;
 constexpr double kNan = Double::quiet_NaN();
 constexpr double kInfinity = Double::infinity();
 
+constexpr Duration kTurn = std::chrono::milliseconds{20};
+
 struct Seen {
   double angle_deg;
   float velocity_rpm;
+  std::uint32_t limits = 0;
 };
+
+std::int64_t asUs(MonotonicTime time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();
+}
 
 link::MotorState state(const Seen& seen) {
   link::MotorState motor;
   motor.total_angle_deg = seen.angle_deg;
   motor.velocity_rpm = seen.velocity_rpm;
+  motor.limits = seen.limits;
   return motor;
 }
 
 class FirstSpinTest : public ::testing::Test {
  protected:
-  /// Takes states as long as it goes on; the number of those taken.
+  /// A second of these states, each for the same time, as long as it goes on; the number of those taken.
   std::size_t spin(std::initializer_list<Seen> states) {
     std::size_t taken = 0;
     for (const auto& each : states) {
       ++taken;
-      if (!first.goesOn(state(each))) break;
+      for (const auto end = now + FirstSpin::kTime / static_cast<int>(states.size()); now < end;
+           now += kTurn) {
+        if (!turn(each)) return taken;
+      }
     }
     return taken;
+  }
+  /// A turn of the program, with a state of this age.
+  bool turn(const Seen& seen, Duration age = std::chrono::milliseconds{5}) {
+    return first.goesOn(state(seen), asUs(now - age), now);
   }
   std::string words() { return text(first, "wheel"); }
 
   FirstSpin first{60.0};
+  MonotonicTime now{std::chrono::seconds{1000}};
 };
 
 TEST_F(FirstSpinTest, AMotorThatTurnsWithTheCurrentIsReady) {
@@ -90,10 +108,7 @@ TEST_F(FirstSpinTest, AStalledMotorHasNotMoved) {
 }
 
 TEST_F(FirstSpinTest, AMotorThatASoftLimitHoldsIsToldToBeTurnedBack) {
-  auto held = state({402.7, 0.0F});
-  held.limits = kLimitAngle;
-  EXPECT_TRUE(first.goesOn(held));
-  EXPECT_TRUE(first.goesOn(held));
+  EXPECT_EQ(spin({{402.7, 0.0F, kLimitAngle}}), 1U);
   EXPECT_EQ(first.outcome(), Outcome::kAtLimit);
   EXPECT_THAT(words(), HasSubstr("its soft limits (angle_min_deg, angle_max_deg) hold it: turn it by hand"));
 }
@@ -123,6 +138,42 @@ TEST_F(FirstSpinTest, WithoutASpeedOrAnAngleItEndsAndNothingIsJudged) {
     EXPECT_EQ(first.outcome(), Outcome::kUnknown);
     EXPECT_THAT(words(), HasSubstr("nothing can be judged"));
   }
+}
+
+TEST_F(FirstSpinTest, AnOldStateEndsItAndNothingIsJudged) {
+  for (int ms = 0; ms <= 100; ms += 20, now += kTurn)
+    EXPECT_TRUE(turn({0.0, 0.0F}, std::chrono::milliseconds{ms}));
+  EXPECT_FALSE(turn({0.0, 0.0F}, std::chrono::milliseconds{101}));
+  EXPECT_EQ(first.outcome(), Outcome::kLate);
+  EXPECT_THAT(words(), HasSubstr("nothing can be judged: commission again"));
+}
+
+TEST_F(FirstSpinTest, OldFeedbackInAYoungStateEndsItToo) {
+  auto motor = state({0.0, 0.0F});
+  motor.feedback_age_us = 200'000;
+  EXPECT_TRUE(first.goesOn(motor, asUs(now), now));
+  motor.feedback_age_us = 200'001;
+  EXPECT_FALSE(first.goesOn(motor, asUs(now), now));
+  EXPECT_EQ(first.outcome(), Outcome::kLate);
+}
+
+TEST_F(FirstSpinTest, AfterAPauseInTheSpinNothingIsJudged) {
+  EXPECT_TRUE(turn({0.0, 0.0F}));
+  now += std::chrono::milliseconds{101};
+  EXPECT_FALSE(turn({90.0, 10.0F}));
+  EXPECT_EQ(first.outcome(), Outcome::kLate);
+}
+
+TEST_F(FirstSpinTest, APauseToTheEndOfTheSpinIsNoStandstill) {
+  for (int turns = 0; turns < 44; ++turns, now += kTurn) EXPECT_TRUE(turn({0.0, 0.0F}));
+  EXPECT_EQ(first.outcome(), Outcome::kLate);
+  for (int turns = 0; turns < 2; ++turns, now += kTurn) EXPECT_TRUE(turn({0.0, 0.0F}));
+  EXPECT_EQ(first.outcome(), Outcome::kNotMoved);
+}
+
+TEST_F(FirstSpinTest, StatesThatAreTooRareAreRefusedWithTheKey) {
+  EXPECT_EQ(whyTooRare(20), "");
+  EXPECT_THAT(whyTooRare(19), HasSubstr("`lcm: {state_hz: 19}` makes them too rare to end a spin in time"));
 }
 
 TEST_F(FirstSpinTest, NothingSeenIsNoSuccess) { EXPECT_EQ(first.outcome(), Outcome::kUnknown); }

@@ -259,6 +259,41 @@ def test_a_commission_that_is_killed_in_the_spin_leaves_its_motor_ready_and_noth
     daemon.must("enable", "other")
 
 
+def test_a_commission_that_is_held_up_in_the_spin_lets_the_motor_go_and_judges_nothing(
+    daemon: Daemon,
+) -> None:
+    person = in_the_spin(daemon, *WHOLE_SECOND)
+    person.process.send_signal(signal.SIGSTOP)
+    coasts = {"status": "ACTIVE", "acting": "nothing", "owner": ""}
+    eventually(lambda: coasts.items() <= yaw(daemon).items(), "it is let go")
+    person.process.send_signal(signal.SIGCONT)
+    assert person.end() == 1
+    # The latter where this machine held it up for longer.
+    assert HIDES_A_TURN in person.output or b"held up for more than 2 s" in person.output
+    assert yaw(daemon)["status"] == "READY"
+
+
+@pytest.mark.parametrize("line", ["on_timeout: damp", "on_disable: hold", "on_estop: brake"])
+def test_a_motor_that_a_loop_would_catch_is_not_spun(line: str) -> None:
+    config = CONFIG.format(realtime="preferred").replace("gm6020, id: 5", "gm6020, id: 5, " + line)
+    with Daemon(config) as daemon:
+        daemon.wait_ready()
+        done = daemon.ctl("commission", "yaw")
+        assert done.returncode == 1
+        assert f"yaw has `{line}`: a loop that would act when the spin is over" in done.stderr
+        assert f"write `{line.split(':')[0]}: coast` for now, restart rc10d" in done.stderr
+        assert "Press Enter" not in done.stdout
+
+
+def test_a_robot_whose_states_are_too_rare_for_the_over_speed_is_refused_with_the_key() -> None:
+    rare = CONFIG.format(realtime="preferred").replace("state_hz: 100", "state_hz: 5")
+    with Daemon(rare) as daemon:
+        daemon.wait_ready()
+        done = daemon.ctl("commission", "yaw")
+        assert done.returncode == 1
+        assert "`lcm: {state_hz: 5}` makes them too rare to end a spin in time" in done.stderr
+
+
 def test_a_motor_without_the_mode_current_is_refused_with_the_setting_that_gives_it() -> None:
     arm = "      - {name: arm, model: DM4310, id: 1, master_id: 17, control: position_velocity}\n"
     with Daemon(ARM + arm) as daemon:

@@ -499,7 +499,9 @@ class TestAWrongFile:
 
     @pytest.fixture
     def robot(self) -> str:
-        wheel = WHEEL.replace("id: 1,", "id: 1, gear_ratio: 36, on_timeout: brake,")
+        wheel = WHEEL.replace(
+            "id: 1,", "id: 1, gear_ratio: 36, on_timeout: brake, on_disable: hold,"
+        )
         return (
             ARM + wheel + "      - {name: other, model: M3508, id: 2, feedback_timeout_ms: 1000}\n"
         )
@@ -541,11 +543,13 @@ class TestAWrongFile:
             re.compile(r"other turned by 3\d\d\.\d°, and wheel did not")
         )
 
-    def test_it_does_not_spin_while_its_time_out_would_keep_torque(
+    def test_it_does_not_spin_while_a_loop_would_act_at_its_end(
         self, page: Page, studio: Studio, card: Locator
     ) -> None:
         ready_to_spin(page, studio, card)
-        expect(card.get_by_role("alert")).to_contain_text("on_timeout: brake")
+        alert = card.get_by_role("alert")
+        expect(alert).to_contain_text("on_timeout: brake, on_disable: hold")
+        expect(alert).to_contain_text("on_timeout: coast, on_disable: coast")
         expect(card.get_by_role("button", name="Hold to spin")).to_have_count(0)
 
 

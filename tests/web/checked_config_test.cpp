@@ -54,6 +54,12 @@ TEST(CheckedConfig, SaysOfEachMotorItsDirectionItsGearAndItsZero) {
   EXPECT_EQ(motors[1]["zero"], "on request");
 }
 
+TEST(CheckedConfig, SaysOfEachMotorWhichLinesWouldActBeforeItsSignIsKnown) {
+  const auto motors = checked(kRobot)["robot"]["buses"][0]["motors"];
+  EXPECT_EQ(motors[0]["untested_loops"], json::parse(R"(["on_estop: ramp"])"));
+  EXPECT_EQ(motors[1]["untested_loops"], json::array());
+}
+
 TEST(CheckedConfig, EachMistakeHasItsPlaceAndTheWordsOfTheChecker) {
   auto text = kRobot;
   text.replace(text.find("id: 2"), 5, "id: 1");

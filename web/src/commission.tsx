@@ -91,7 +91,7 @@ function Told(props: { outcome: TestOutcome | null }) {
   );
 }
 
-function SpinStep(props: StepProps & { modes: string[]; onTimeout: string | null }) {
+function SpinStep(props: StepProps & { modes: string[] }) {
   const { link, word } = useStudio();
   const { record, motor } = props;
   const now_deg = useAngle(motor);
@@ -129,7 +129,7 @@ function SpinStep(props: StepProps & { modes: string[]; onTimeout: string | null
         </label>
       </div>
       <div onPointerDownCapture={() => (begun_us.current = link.known.state?.data.mono_us ?? 0)} onKeyDownCapture={() => (begun_us.current = link.known.state?.data.mono_us ?? 0)}>
-        <AloneTest motor={motor} plan={plan} label={word('comSpinHold')} onTimeout={props.onTimeout} onOutcome={judge} />
+        <AloneTest motor={motor} plan={plan} label={word('comSpinHold')} loops={props.checked?.untested_loops ?? null} onOutcome={judge} />
       </div>
       <Told outcome={told} />
     </>
@@ -150,7 +150,7 @@ function firstStep(props: StepProps & { modes: string[] }, now_deg: number): Tes
   return { ...kFirstPlan, ...bounds, mode: 'velocity', amplitude: 20, max_speed_rpm: Math.max(record.over_speed_rpm, 30) };
 }
 
-function FirstStep(props: StepProps & { modes: string[]; onTimeout: string | null }) {
+function FirstStep(props: StepProps & { modes: string[] }) {
   const { word } = useStudio();
   const { record, motor } = props;
   const now_deg = useAngle(motor);
@@ -174,7 +174,7 @@ function FirstStep(props: StepProps & { modes: string[]; onTimeout: string | nul
           {' A'}
         </label>
       </div>
-      <AloneTest motor={motor} plan={plan} label={word('comStepHold')} onTimeout={props.onTimeout} onOutcome={judge} />
+      <AloneTest motor={motor} plan={plan} label={word('comStepHold')} loops={props.checked?.untested_loops ?? null} onOutcome={judge} />
       <Told outcome={told} />
     </>
   );
@@ -240,7 +240,6 @@ export function Commission() {
   const finding = shown === 'end' ? undefined : record.found[shown];
   const modes = info.modes;
   const missing = (kNeeds[shown] ?? []).filter((step) => record.found[step]?.good !== true || !holds(step));
-  const onTimeout = checked?.on_timeout ?? null;
   return (
     <>
       <div class="toolbar no-print">
@@ -283,8 +282,8 @@ export function Commission() {
               {`${word('comFirst')} ${missing.map((step) => word(kStepWords[step])).join(' · ')}`}
             </p>
           )}
-          {shown === 'spin' && missing.length === 0 && <SpinStep {...props} modes={modes} onTimeout={onTimeout} />}
-          {shown === 'step' && missing.length === 0 && <FirstStep {...props} modes={modes} onTimeout={onTimeout} />}
+          {shown === 'spin' && missing.length === 0 && <SpinStep {...props} modes={modes} />}
+          {shown === 'step' && missing.length === 0 && <FirstStep {...props} modes={modes} />}
           {shown === 'end' && <CommissionEnd {...props} robot={robot} info={info} text={running?.text ?? null} />}
           {finding !== undefined && (
             <div class={`told ${finding.good ? 'good' : 'bad'}`} role="status">

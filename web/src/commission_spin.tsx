@@ -10,14 +10,12 @@ import { isOn } from './commission_record';
 import { kAtEnd, kDisableAtEnd } from './protocol';
 import { Refusal } from './refusal';
 
-/** Fallbacks that keep no torque when the page is gone. */
-const kLettingGo = ['coast', 'damp'];
-
 export function AloneTest(props: {
   motor: string;
   plan: TestPlan;
   label: string;
-  onTimeout: string | null;
+  /** CheckedMotor.untested_loops; null: not known. */
+  loops: string[] | null;
   onOutcome: (outcome: TestOutcome) => void;
 }) {
   const { link, word } = useStudio();
@@ -28,7 +26,6 @@ export function AloneTest(props: {
   const mine = useRef(false);
   const motor = known.state?.data.motors.find((each) => each.name === props.motor);
   const mayCommand = known.hello?.right === 'command' && known.state !== null;
-  const keeps = props.onTimeout !== null && !kLettingGo.includes(props.onTimeout);
 
   const ask = async (operation: 'enable_alone' | 'disable', values: Record<string, number> = {}) => {
     setBusy(true);
@@ -61,19 +58,19 @@ export function AloneTest(props: {
     void ask('disable', kAtEnd);
   };
 
-  if (keeps) {
+  if (props.loops !== null && props.loops.length > 0) {
     return (
       <p class="notice" role="alert">
-        {`${word('comKeepsTorque')} `}
-        <code>{`on_timeout: ${props.onTimeout ?? ''}`}</code>
-        {`. ${word('comKeepsTorqueMend')} `}
-        <code>on_timeout: coast</code>
+        {`${word('comLoopActs')} `}
+        <code>{props.loops.join(', ')}</code>
+        {`. ${word('comLoopActsMend')} `}
+        <code>{props.loops.map((line) => line.replace(/:.*/, ': coast')).join(', ')}</code>
       </p>
     );
   }
   return (
     <>
-      {props.onTimeout === null && <p class="notice">{word('comTimeoutUnknown')}</p>}
+      {props.loops === null && <p class="notice">{word('comLoopsUnknown')}</p>}
       <div class="toolbar">
         {on ? (
           <button type="button" disabled={!mayCommand} onClick={() => void ask('disable')}>

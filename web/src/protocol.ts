@@ -246,6 +246,8 @@ export interface CheckedMotor {
   on_timeout: string;
   on_disable: string;
   on_estop: string;
+  /** Lines by which a loop acts after a target, a disable or an e-stop: not before the first spin has shown its sign. */
+  untested_loops: string[];
 }
 
 export interface CheckedBus {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -17,12 +18,14 @@
 #include "client/first_spin.hpp"
 #include "client/hand_turn.hpp"
 #include "client/quantity_text.hpp"
+#include "config/check/untested_loops.hpp"
 #include "drive.hpp"
 #include "feed.hpp"
 #include "link/at_end.hpp"
 #include "link/until_its_end.hpp"
 #include "link/words.hpp"
 #include "require_mode.hpp"
+#include "running_config.hpp"
 #include "verbs.hpp"
 
 namespace rc10::ctl {
@@ -31,8 +34,7 @@ namespace {
 constexpr double kMostCurrentA = 20.0;
 // docs/lcm.md: reference of the angle lost.
 constexpr std::int32_t kReferenceLost = 102;
-constexpr Duration kSpinTime = std::chrono::seconds{1};
-/// The slowest state_hz is one a second.
+/// Some periods of the slowest state_hz that it takes, on a busy computer.
 constexpr Duration kShown = std::chrono::seconds{2};
 
 struct CommissionOptions {
@@ -80,6 +82,35 @@ std::string motorsOn(const link::Welcome& welcome, const link::State& state) {
   return names;
 }
 
+std::string quoted(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const auto& line : lines) text += (text.empty() ? "`" : ", `") + line + "`";
+  return text;
+}
+
+// By the file with which the robot started: no loop may act before the spin has shown the sign of its
+// current.
+Result<void> requireNoLoop(const Global& global, const link::Welcome& welcome, std::size_t place,
+                           const std::string& name) {
+  const auto config = runningConfig(global, welcome);
+  const auto* motor = config ? motorAt(*config, place) : nullptr;
+  if (motor == nullptr) {
+    std::printf(
+        "The file of the robot cannot be read here. See to it that on_timeout, on_disable and on_estop of %s "
+        "are coast: a loop may drive it on while the sign of its current is not known.\n",
+        name.c_str());
+    return {};
+  }
+  const auto lines = untestedLoops(*motor);
+  if (lines.empty()) return {};
+  std::vector<std::string> meanwhile;
+  for (const auto& line : lines) meanwhile.push_back(line.substr(0, line.find(':')) + ": coast");
+  return fail(name + " has " + quoted(lines) +
+              ": a loop that would act when the spin is over, paused or stopped, and drive it on if the sign "
+              "of its current is wrong, which the spin is to show: write " +
+              quoted(meanwhile) + " for now, restart rc10d, and commission again");
+}
+
 class Commissioning {
  public:
   Commissioning(const Global& global, LinkClient& rc10d, const CommissionOptions& options, std::size_t motor,
@@ -125,7 +156,7 @@ class Commissioning {
   ExitCode spin() {
     std::printf("2. %s will get %s for %g s; above %g rpm it is let go. Type its name to spin it: ",
                 options_.motor.c_str(), client::quantity(current_a_, 2, "A").c_str(),
-                static_cast<double>(seconds(kSpinTime)), options_.over_speed_rpm);
+                static_cast<double>(seconds(client::FirstSpin::kTime)), options_.over_speed_rpm);
     if (waitLine(feed_) != options_.motor) return complain({"nothing was enabled"}, ExitCode::kFailed);
     // From here on rc10d enables nothing else, until this one is disabled. However this program ends, rc10d
     // sees the end of `enabling` and disables it.
@@ -203,9 +234,11 @@ class Commissioning {
     order.setpoint.target.mode = ControlMode::kCurrent;
     order.setpoint.target.value = current_a_;
     order.motor = motor_;
-    order.time = kSpinTime;
+    order.time = client::FirstSpin::kTime;
     order.steer = [this, &seen](link::Setpoint&, const link::State& state) -> std::optional<std::string> {
-      return seen.goesOn(state.motors[motor_]) ? std::nullopt : std::optional<std::string>{""};
+      const auto now = std::chrono::steady_clock::now();
+      return seen.goesOn(state.motors[motor_], state.mono_us, now) ? std::nullopt
+                                                                   : std::optional<std::string>{""};
     };
     order.hear = [&seen](const link::Event& event) {
       if (event.code == kReferenceLost) seen.loseAngle();
@@ -236,6 +269,10 @@ ExitCode commission(const Global& global, const CommissionOptions& options) {
   if (!motor) return complain(motor.error(), ExitCode::kFailed);
   if (const auto able = requireMode(rc10d->welcome().motors[*motor], ControlMode::kCurrent); !able)
     return complain({"commission spins it with a current: " + able.error().message}, ExitCode::kFailed);
+  if (const auto why = client::whyTooRare(rc10d->welcome().state_hz); !why.empty())
+    return complain({why}, ExitCode::kFailed);
+  if (const auto coasts = requireNoLoop(global, rc10d->welcome(), *motor, options.motor); !coasts)
+    return complain(coasts.error(), ExitCode::kFailed);
   return Commissioning(global, *rc10d, options, *motor, *current_a).run();
 }
 
