@@ -4,7 +4,7 @@ import pytest
 
 import rc10
 from fake_daemon import FakeDaemon, setpoints
-from rc10.lcm_types import response_t
+from rc10.lcm_types import response_t, signals_t
 from rc10.robot_client import AtEnd
 from virtual_link import VirtualLink
 
@@ -103,6 +103,56 @@ def test_leaving_may_disable_and_nothing_else(daemon: FakeDaemon, link: VirtualL
     assert daemon.operations() == ["enable wheel", "disable wheel"]
     last = daemon.executed[-1]
     assert {value.name: value.value for value in last.values} == {"at_end": 1.0}
+
+
+@pytest.fixture
+def given(link: VirtualLink) -> list[signals_t]:
+    """What the module `base` was sent."""
+    given: list[signals_t] = []
+    rc10.Subscriber(link, "demo.v1.base", signals_t, given.append)
+    return given
+
+
+@pytest.mark.parametrize("at_end", ["timeout", "disable", "coast"])
+def test_leaving_ends_the_inputs_of_modules_at_once(
+    link: VirtualLink, given: list[signals_t], at_end: AtEnd
+) -> None:
+    with Client(link, at_end) as robot:
+        robot.module("base").send(vx_m_s=0.5, validity_ms=1000, priority=9)
+    drain(link)
+    first, last = given
+    assert dict(zip(last.names, last.values)) == {"vx_m_s": 0.5}
+    assert (last.validity_ms, last.priority) == (1, 9)
+    assert last.session == first.session
+    assert last.seq > first.seq
+
+
+def test_inputs_that_have_lapsed_do_not_come_back_for_the_end(
+    lapsing: Client, link: VirtualLink, given: list[signals_t]
+) -> None:
+    with lapsing as robot:
+        robot.module("base").send(vx_m_s=0.5)
+        link.pass_time(0.06)
+    drain(link)
+    assert [message.validity_ms for message in given] == [0]
+
+
+@pytest.mark.parametrize(
+    ("change", "count"), [("READY -> ENABLING", 1), ("ACTIVE -> FAULT (stalled)", 2)]
+)
+def test_inputs_from_before_a_motor_was_enabled_do_not_come_back_for_the_end(
+    lapsing: Client,
+    daemon: FakeDaemon,
+    link: VirtualLink,
+    given: list[signals_t],
+    change: str,
+    count: int,
+) -> None:
+    with lapsing as robot:
+        robot.module("base").send(vx_m_s=0.5, validity_ms=1000)
+        daemon.publish_event(change, code=100)
+    drain(link)
+    assert len(given) == count
 
 
 def test_an_end_that_does_not_exist_is_refused_at_once(link: VirtualLink) -> None:

@@ -13,5 +13,7 @@ inline constexpr std::size_t kMaxMessageSignals = 32;
 /// Bytes of a name: of a client, a module's input, a motor.
 inline constexpr std::size_t kMaxNameBytes = 31;
 inline constexpr Duration kMaxValidity = std::chrono::milliseconds{1000};
+/// Validity of a message that says 0.
+inline constexpr Duration kDefaultValidity = std::chrono::milliseconds{50};
 
 }  // namespace rc10

@@ -104,6 +104,19 @@ TEST_F(ModuleTest, InputsGoOutOnceWithWhoHowLongAndGrowingNumbers) {
   EXPECT_GT(seen[1].seq, seen[0].seq);
 }
 
+TEST_F(ModuleTest, LeavingEndsTheInputsAtOnce) {
+  ASSERT_TRUE(base_.send({{"vx_m_s", 0.5}}, {.validity = 1000ms, .priority = 9}));
+  ASSERT_TRUE(robot_.close());
+  const auto seen = inputs(2);
+  ASSERT_EQ(seen.size(), 2U);
+  EXPECT_EQ(seen[1].validity_ms, 1);
+  EXPECT_EQ(seen[1].names, seen[0].names);
+  EXPECT_EQ(seen[1].values, seen[0].values) << "no other movement in its last tick";
+  EXPECT_EQ(seen[1].priority, 9);
+  EXPECT_EQ(seen[1].session, seen[0].session);
+  EXPECT_GT(seen[1].seq, seen[0].seq);
+}
+
 TEST_F(ModuleTest, TheStateHasItsOutputsItsOwnerAndItsAge) {
   EXPECT_FALSE(base_.state());
   EXPECT_THAT(base_.state()["x_m"], IsNan());

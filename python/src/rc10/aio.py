@@ -105,7 +105,8 @@ class Robot(RobotClient):
     """One robot, seen from one program. Belongs to the event loop that entered it.
 
     Leaving the `async with` statement, by an exception or a cancellation too, ends the commands:
-    each motor does its `on_timeout`. Argument at_end of connect() says otherwise.
+    each motor does its `on_timeout`. Argument at_end of connect() says otherwise. The inputs given
+    to modules end in any case.
 
     Args:
         name: the name of the robot.

@@ -74,7 +74,8 @@ class Robot(RobotClient):
     hangs or dies lets go of the motors.
 
     Leaving the `with` statement, by an exception too, ends the commands: each motor does its
-    `on_timeout`, as when the program dies. Argument at_end of connect() says otherwise.
+    `on_timeout`, as when the program dies. Argument at_end of connect() says otherwise. The inputs
+    given to modules end in any case.
 
     Args:
         name: the name of the robot.

@@ -7,18 +7,20 @@ import math
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Callable
 
 from rc10.errors import NotReceived, Timeout
 from rc10.lcm_types.signals_t import signals_t
 from rc10.spelling import did_you_mean
 from rc10.topics import Publisher, Subscriber
-from rc10.validity import check_validity
+from rc10.validity import ENDED_MS, check_validity, lapses_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rc10.identity import Identity
+    from rc10.in_force import InForce
     from rc10.link import Link
 
 _log = logging.getLogger("rc10")
@@ -56,9 +58,9 @@ class ModuleState:
         return self.outputs[name]
 
 
-# The name of the robot and of the module, the transport, who sends, with which priority, and
-# whether the robot is heard.
-ModuleParts = tuple[str, str, "Link", "Identity", int, Callable[[], bool]]
+# The name of the robot and of the module, the transport, who sends, with which priority, whether
+# the robot is heard, and what ends on leaving.
+ModuleParts = tuple[str, str, "Link", "Identity", int, Callable[[], bool], "InForce"]
 
 # A module's outputs come as often as the robot's state.
 _SILENT_S = 1.0
@@ -75,6 +77,7 @@ class Module:
         identity: Identity,
         priority: int,
         robot_heard: Callable[[], bool],
+        in_force: InForce,
     ) -> None:
         self.name = name
         self._robot_name = robot
@@ -83,6 +86,7 @@ class Module:
         self._identity = identity
         self._priority = priority
         self._robot_heard = robot_heard
+        self._in_force = in_force
         self._sent_in_vain_s: float | None = None
         self._now = link.now
         self._publisher = Publisher(link, f"{robot}.v1.{name}", signals_t)
@@ -91,7 +95,8 @@ class Module:
     def send(self, *, validity_ms: int = 0, priority: int | None = None, **inputs: float) -> None:
         """Gives the module these inputs; what is not named is not given.
 
-        They hold for `validity_ms` only. Call this again before that, from your own loop.
+        They hold for `validity_ms` only, and until the robot is left. Call this again before that,
+        from your own loop.
 
         Args:
             validity_ms: how long they hold, from when the host receives them; 0: its default, 50.
@@ -108,17 +113,11 @@ class Module:
         for name, value in inputs.items():
             if not math.isfinite(value):
                 raise ValueError(f"{name} = {value} is not finite: leave it out, or give a number")
-        message = signals_t()
-        message.utime = time.time_ns() // 1000
-        message.client = self._identity.client
-        message.session = self._identity.session
-        message.seq = self._identity.next_seq()
-        message.priority = self._priority if priority is None else priority
-        message.validity_ms = validity_ms
-        message.count = len(inputs)
-        message.names = list(inputs)
-        message.values = [float(value) for value in inputs.values()]
-        self._publisher.publish(message)
+        publish = partial(self._publish, inputs, self._priority if priority is None else priority)
+        self._in_force.gave(
+            self.name, partial(publish, ENDED_MS), lapses_at(self._now(), validity_ms)
+        )
+        publish(validity_ms)
         self._tell_if_missing()
 
     @property
@@ -137,6 +136,19 @@ class Module:
         message = latest.message
         outputs = dict(zip(message.names, message.values))
         return ModuleState(outputs, message.client, latest.received_s, self._now)
+
+    def _publish(self, inputs: Mapping[str, float], priority: int, validity_ms: int) -> None:
+        message = signals_t()
+        message.utime = time.time_ns() // 1000
+        message.client = self._identity.client
+        message.session = self._identity.session
+        message.seq = self._identity.next_seq()
+        message.priority = priority
+        message.validity_ms = validity_ms
+        message.count = len(inputs)
+        message.names = list(inputs)
+        message.values = [float(value) for value in inputs.values()]
+        self._publisher.publish(message)
 
     def _tell_if_missing(self) -> None:
         """Logs once that a robot which is heard does not seem to have this module."""

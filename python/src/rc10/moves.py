@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Callable
 
-from rc10.orders import Order, obstacle, without_reference
+from rc10.orders import Order, hindered
 from rc10.setpoints import Mode
 
 if TYPE_CHECKING:
@@ -20,15 +20,23 @@ if TYPE_CHECKING:
 _ON_ITS_WAY_S = 0.3
 # Passing through the tolerance is not arriving.
 _SETTLED_US = 60_000
-_SILENCE_S = 1.0
+# Silence of states after which rc10d or its gateway has ended, and what it is called.
+SILENCE_S = 1.0
+SILENT = "no state of the robot for a second: did rc10d or rc10-lcm end?"
 _MOTOR_STATUS = 100
 # "ACTIVE -> READY (disabled by 'panel')": it does not obey any more.
 _LEFT_ACTIVE = re.compile(r"(ACTIVE|ENABLING) -> (?!ACTIVE)")
+_TO_ENABLING = re.compile(r"\w+ -> ENABLING\b")
 
 
 def leaves_active(event: Event) -> bool:
     """Whether its motor ceases to obey."""
     return event.code == _MOTOR_STATUS and _LEFT_ACTIVE.match(event.text) is not None
+
+
+def is_enabled(event: Event) -> bool:
+    """Whether its motor begins to be enabled: what was said before moves it no more."""
+    return event.code == _MOTOR_STATUS and _TO_ENABLING.match(event.text) is not None
 
 
 class MoveOutcome(Enum):
@@ -130,7 +138,7 @@ class Move:
             return
         on_circle = self.setpoint.mode is Mode.ANGLE
         self._angle_deg = motor.angle_deg if on_circle else motor.total_angle_deg
-        hindrance = obstacle(state, motor) or without_reference(motor)
+        hindrance = hindered(state, motor)
         not_obeyed = self._order.not_obeyed(motor)
         if not not_obeyed:
             self._obeyed_s = state.taken_at_s
@@ -159,15 +167,15 @@ class Move:
         """Ends it when its time is over, or no state has come for a second."""
         now_s = self._now()
         if self._result is not None:
-            self._dropped = self._dropped or now_s >= self._heard_s + _SILENCE_S
+            self._dropped = self._dropped or now_s >= self._heard_s + SILENCE_S
         elif now_s >= self._started_s + self._timeout_s:
             self._end(
                 MoveOutcome.TIMEOUT,
                 f"{self.motor} is at {self._angle_deg:g} deg and not at {self.setpoint.value:g} "
                 f"after {self._timeout_s:g} s",
             )
-        elif now_s >= self._heard_s + _SILENCE_S:
-            self.fail("no state of the robot for a second: did rc10d or rc10-lcm end?")
+        elif now_s >= self._heard_s + SILENCE_S:
+            self.fail(SILENT)
 
     def fail(self, reason: str) -> None:
         """Ends it without success, if it has not ended; its target is not sent any more."""

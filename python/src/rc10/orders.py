@@ -50,11 +50,8 @@ class Order:
                 f"{self.motor} follows another target of '{self.client}': does a second program "
                 f"run under this client name?{said}"
             )
-        if motor.owner:
-            return (
-                f"{self.motor} is held by the client '{motor.owner}': end that one, or take a "
-                f"higher priority{said}"
-            )
+        if taken := of_another(motor, self.client):
+            return taken + said
         if said:
             return f"{self.motor} did not take the target{said}"
         what = "lost" if self.obeyed else "did not take"
@@ -77,6 +74,21 @@ def obstacle(state: RobotState, motor: MotorState) -> str:
             MotorStatus.FAULT: f"{name} is in FAULT ({motor.fault_text}): clear it, then enable it",
         }[motor.status]
     return ""
+
+
+def hindered(state: RobotState, motor: MotorState) -> str:
+    """Reason why a motor would not go to an angle, and what to do; empty if it would."""
+    return obstacle(state, motor) or without_reference(motor)
+
+
+def of_another(motor: MotorState, client: str) -> str:
+    """Who else holds a motor, and what to do; empty if nobody."""
+    if motor.owner in ("", client):
+        return ""
+    return (
+        f"{motor.name} is held by the client '{motor.owner}': end that one, or take a higher "
+        "priority"
+    )
 
 
 def without_reference(motor: MotorState) -> str:

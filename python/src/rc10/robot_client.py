@@ -9,6 +9,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, Union, get_args
 
+from rc10.catch_up import PAUSE_S, CatchUp
 from rc10.decoder import Decoder
 from rc10.errors import (
     CommandRefused,
@@ -24,15 +25,15 @@ from rc10.inbox import Inbox
 from rc10.lcm_types.command_t import command_t
 from rc10.lcm_types.setpoint_t import setpoint_t
 from rc10.link import MULTICAST_GROUP, ROUTE_COMMAND, Link
-from rc10.moves import Move, leaves_active
-from rc10.orders import obstacle, without_reference
+from rc10.moves import Move
+from rc10.orders import hindered, obstacle
 from rc10.printable import printable
 from rc10.recorder import Recorder
 from rc10.requests import Requests
 from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
 from rc10.spelling import did_you_mean, meant
 from rc10.state import MotorStatus, RobotStatus
-from rc10.validity import DEFAULT_VALIDITY_MS, check_validity
+from rc10.validity import ENDED_MS, check_validity, lapses_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Set
@@ -63,8 +64,6 @@ SHOWN_S = 2.0
 # Period and validity of a move's target while the program receives.
 RESEND_S = 0.02
 _MOVE_VALIDITY_MS = 100
-# Lateness of a target that shows a pause of the program: a signal, a busy computer.
-_PAUSE_S = 0.1
 # Resolution of a state's stamp.
 _STAMP_S = 1e-6
 # A state younger than this proves that the daemon runs and is heard.
@@ -127,7 +126,7 @@ class RobotClient:
         self._closed = False
         self._moves: dict[str, Move] = {}
         self._resend_s = 0.0
-        self._resumed_s = 0.0  # end of the last pause
+        self._catch_up = CatchUp(0.0)
         self._judged: RobotState | None = None
         self._inbox.on_event = self._on_event
         # To be undone on leaving.
@@ -144,7 +143,6 @@ class RobotClient:
         self._told: set[str] = set()
         # Robots that were heard while the first state was waited for.
         self._heard: set[str] = set()
-        # The last setpoint of each motor, and until when it acts.
         self._in_force = InForce()
 
     # ---- what is known -----------------------------------------------------------------------
@@ -305,12 +303,14 @@ class RobotClient:
         motor = state.motor(name)
         runs = state.status is RobotStatus.RUN
         just_enabled = runs and self._is_older(state, name)
-        if not just_enabled and (hindrance := _hindered(state, motor)):
+        if not just_enabled and (hindrance := hindered(state, motor)):
             move.fail(hindrance)
             return move
         self.command({name: setpoint}, validity_ms=_MOVE_VALIDITY_MS)
+        if not self._moves:
+            self._catch_up = CatchUp(self._link.now(), RESEND_S + PAUSE_S)
+            self._resend_s = self._link.now() + RESEND_S
         self._moves[name] = move
-        self._resend_s = self._link.now() + RESEND_S
         return move
 
     @contextmanager
@@ -373,6 +373,7 @@ class RobotClient:
         for move in self._moves.values():
             move.fail("the program has let go of the robot")
         self._moves.clear()
+        self._in_force.end_inputs(self._link.now())
         if self._at_end == "timeout":
             self._lapse(disabled=set())
             return None
@@ -398,7 +399,7 @@ class RobotClient:
         known = None if self._inbox.state is None else self._inbox.state.motors
         last = self._in_force.at(self._link.now(), known, disabled)
         for name, setpoint in last.items():
-            self._publish_command({name: setpoint}, validity_ms=1)
+            self._publish_command({name: setpoint}, ENDED_MS)
 
     @contextmanager
     def _hearing(self) -> Iterator[None]:
@@ -441,8 +442,7 @@ class RobotClient:
             if event.text not in self._told:
                 self._told.add(event.text)
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
-        if leaves_active(event):  # its last target would end what holds it now
-            self._in_force.ended(event.source)
+        self._in_force.on_event(event)
         for move in self._moves.values():
             move.on_event(event)
 
@@ -450,7 +450,9 @@ class RobotClient:
         """Has the target of a move end now: nobody waits for it any more."""
         if self._moves.get(move.motor) is move:
             self._moves.pop(move.motor)
-            self._publish_command({move.motor: move.setpoint}, validity_ms=1)
+            # One that has lapsed would let go of what holds the motor since.
+            if move.motor in self._in_force.at(self._link.now(), None, ()):
+                self._publish_command({move.motor: move.setpoint}, ENDED_MS)
         move.fail("cancelled")
 
     def _advance_moves(self) -> None:
@@ -465,8 +467,8 @@ class RobotClient:
                 taken = motor is not None and motor.owner not in ("", self.client)
                 # One from before the move says nothing about it.
                 news = state.taken_at_s >= move.started_s
-                hindered = motor is None or (news and _hindered(state, motor))
-                if hindered or (move.done() and taken):
+                lost = motor is None or (news and hindered(state, motor))
+                if lost or (move.done() and taken):
                     self._moves.pop(name)
                     move.fail(f"{name} cannot be moved any more")
                     continue
@@ -475,11 +477,8 @@ class RobotClient:
                 self._moves.pop(name)
         now_s = self._link.now()
         if self._moves and now_s >= self._resend_s:
-            if now_s - self._resend_s > _PAUSE_S:
-                self._resumed_s = now_s
             self._resend_s = now_s + RESEND_S
-            # Only what is known of after the pause tells whether the motors still obey.
-            if state is None or state.taken_at_s < self._resumed_s:
+            if not self._catch_up.done(now_s, state):
                 return
             for name, move in self._moves.items():
                 self._publish_command({name: move.setpoint}, _MOVE_VALIDITY_MS)
@@ -493,8 +492,7 @@ class RobotClient:
         message.priority = self._priority
         message.validity_ms = validity_ms
         message.setpoint_count = len(orders)
-        until = self._link.now() + (validity_ms or DEFAULT_VALIDITY_MS) / 1000
-        self._in_force.sent(orders, until)
+        self._in_force.sent(orders, lapses_at(self._link.now(), validity_ms))
         for name, order in orders.items():
             setpoint = setpoint_t()
             setpoint.motor = name
@@ -569,7 +567,8 @@ class RobotClient:
             state = self._inbox.state
             return state is not None and state.age_s < _LIVE_S
 
-        return self._name, module, self._link, self._identity, self._priority, heard
+        identity, priority = self._identity, self._priority
+        return self._name, module, self._link, identity, priority, heard, self._in_force
 
     def _check_open(self) -> None:
         if self._closed:
@@ -594,7 +593,3 @@ class RobotClient:
 def _listed(names: Names | None) -> Iterable[str] | None:
     """A name alone is a list of one, not of its letters."""
     return [names] if isinstance(names, str) else names
-
-
-def _hindered(state: RobotState, motor: MotorState) -> str:
-    return obstacle(state, motor) or without_reference(motor)

@@ -6,6 +6,13 @@ DEFAULT_VALIDITY_MS = 50
 """Given by rc10d to a message that says 0."""
 MAX_VALIDITY_MS = 1000
 """rc10d refuses a longer one."""
+ENDED_MS = 1
+"""The shortest: what was sent before, said again with it, ends in the next ticks."""
+
+
+def lapses_at(now_s: float, validity_ms: int) -> float:
+    """When a command ends that is sent now."""
+    return now_s + (validity_ms or DEFAULT_VALIDITY_MS) / 1000
 
 
 def check_validity(validity_ms: int) -> None:

@@ -9,8 +9,6 @@
 
 namespace rc10 {
 
-inline constexpr Duration kDefaultValidity = std::chrono::milliseconds{50};
-
 /// A stamp from the future is a sender's mistake; it must not prolong the message.
 [[nodiscard]] inline MonotonicTime receivedAt(std::int64_t received_ns, MonotonicTime now) noexcept {
   return std::min(MonotonicTime{Duration{received_ns}}, now);

@@ -55,7 +55,7 @@ struct RobotOptions {
 /// itself.
 ///
 /// **Leaving.** close() and the destructor end the held targets: each motor does its on_timeout, as when the
-/// program dies. RobotOptions::at_end says otherwise.
+/// program dies. RobotOptions::at_end says otherwise. The inputs of modules end in any case.
 class Robot {
  public:
   /// `name`: `robot:` in rc10d's configuration. Does not wait for rc10d, and never throws for the state of

@@ -72,6 +72,7 @@ void RobotSession::receiveEvent(std::span<const std::byte> bytes) {
     const Lock lock(core_.mutex);
     if (core_.closed) return;
     targets_.onEvent(event, news);
+    modules_.onEvent(event);
     const bool names_us = event.text.find('\'' + core_.options.client + '\'') != std::string::npos;
     concerns_us = concerns_us || (event.code == kSetpointSkipped && targets_.holds(event.source)) ||
                   (names_us && (event.code == kNotOwner || event.code == kCommandRefused));
@@ -138,6 +139,7 @@ Result<void> RobotSession::close() {
     core_.closed = true;
     // Torque first: that needs no answer.
     targets_.letGo(timeNow(), news);
+    modules_.letGo(timeNow());
     disable = core_.leaving.toDisable(core_.newest.get().get());
   }
   core_.wake_sender.notify_all();

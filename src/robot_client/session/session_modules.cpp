@@ -22,6 +22,7 @@ Result<void> SessionModules::send(const std::string& module, const Signals& inpu
     const auto now = timeNow();
     targets_.aliveAt(now);
     done = core_.closed ? fail("the robot is closed") : core_.outgoing.inputs(module, inputs, options);
+    if (done) in_force_.give(module, inputs, options, now);
     missing = done && silent_.sent(module, heard, core_.newest.live(now), now);
   }
   if (missing)
@@ -29,6 +30,11 @@ Result<void> SessionModules::send(const std::string& module, const Signals& inpu
                         "' to which inputs are sent: `rc10ctl modules` shows which there are");
   if (!done) core_.problems.tell(done.error().message);
   return done;
+}
+
+void SessionModules::letGo(MonotonicTime now) {
+  for (const auto& [module, given] : in_force_.takeAll(now))
+    (void)core_.outgoing.inputs(module, given.inputs, given.options);
 }
 
 double SessionModules::output(const std::string& module, std::string_view output) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "robot_client/session/inputs_in_force.hpp"
 #include "robot_client/session/module_inbox.hpp"
 #include "robot_client/session/session_core.hpp"
 #include "robot_client/session/session_targets.hpp"
@@ -22,13 +23,20 @@ class SessionModules {
   [[nodiscard]] double output(const std::string& module, std::string_view output);
   [[nodiscard]] Result<void> waitForState(const std::string& module, Duration timeout);
 
+  // With the mutex held.
+  void onEvent(const Event& event) { in_force_.onEvent(event); }
+  /// The program leaves: inputs that act end now, not when they lapse.
+  void letGo(MonotonicTime now);
+
  private:
   [[nodiscard]] const ModuleInbox& inboxOf(const std::string& module);
 
   SessionCore& core_;
   SessionTargets& targets_;
   ModuleInboxes inboxes_;
-  SilentModules silent_;  ///< Under the mutex.
+  // Under the mutex:
+  SilentModules silent_;
+  InputsInForce in_force_;
 };
 
 }  // namespace robot_client

@@ -149,7 +149,7 @@ void SessionTargets::letGo(MonotonicTime now, News& news) {
   // Those that are disabled do their on_disable instead.
   for (const auto& message : held) {
     for (const auto& order : message) {
-      if (!core_.leaving.disables(order.motor)) (void)core_.outgoing.command({order}, milliseconds{1});
+      if (!core_.leaving.disables(order.motor)) (void)core_.outgoing.command({order}, kEnded);
     }
   }
 }

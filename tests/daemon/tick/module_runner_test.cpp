@@ -165,6 +165,18 @@ TEST_F(ModuleRunnerTest, AMessageThatIsTooOldEndsWhatItsClientSaidBefore) {
   EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
 }
 
+// What the client library sends when its program leaves.
+TEST_F(ModuleRunnerTest, TheSameInputsForAMillisecondEndThoseBefore) {
+  const ScriptedType type;
+  start({{&type, 0}});
+  signal("planner", 0, 12.0, 1000ms);
+  robot_->tick();
+  signal("planner", 0, 12.0, 1ms);
+  robot_->run(2);
+  EXPECT_TRUE(std::isnan(seen()));
+  EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
+}
+
 TEST_F(ModuleRunnerTest, AModuleGivesALaterOneItsInputInTheSameTick) {
   double value = kNoSignal;
   const ScriptedType remote{[&](const Tick&, ModuleRobot& robot) {
