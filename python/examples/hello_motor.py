@@ -24,10 +24,14 @@ def main() -> None:
     with rc10.connect(options.robot, client="hello-motor", at_end="disable") as robot:
         robot.wait_for_state()
         robot.enable(options.motor)
-        # The loop is what keeps the motor going: a command acts for 50 ms.
+        watch = rc10.Watch(robot, options.motor)
+        # The loop is what keeps the motor going: a command acts for 50 ms. It ends with an error
+        # when somebody stops the motor.
         for t_s in robot.rate(50):
             if t_s > options.seconds:
                 break
+            if not watch.may_send():
+                continue
             robot.command({options.motor: rc10.velocity_rpm(options.rpm)})
             motor = robot.motor(options.motor)
             print(

@@ -155,7 +155,10 @@ def _pulse(robot: rc10.Robot, motor: str, current_a: float) -> tuple[float, floa
 
 
 def _stop(robot: rc10.Robot, motor: str) -> None:
+    watch = rc10.Watch(robot, motor)
     for t_s in robot.rate(50):
+        if not watch.may_send():
+            continue
         robot.command({motor: rc10.velocity_rpm(0)}, validity_ms=150)
         if abs(robot.motor(motor).velocity_rpm) < 1.0 or t_s > 2.0:
             return

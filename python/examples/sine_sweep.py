@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rc10
-from rc10.orders import obstacle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -81,18 +80,23 @@ def disturbed(seen: MotorRecording, time_s: Floats, frequency_hz: float) -> bool
 
 
 def measure(
-    robot: rc10.Robot, motor: str, frequency_hz: float, amplitude_rpm: float, offset_rpm: float
+    robot: rc10.Robot,
+    watch: rc10.Watch,
+    motor: str,
+    frequency_hz: float,
+    amplitude_rpm: float,
+    offset_rpm: float,
 ) -> tuple[complex, bool]:
     """Runs one sine; returns the response, and whether it was disturbed."""
     length_s = max(_LEAST_S, _PERIODS / frequency_hz)
     settle_s = max(0.3, _SETTLE_PERIODS / frequency_hz)
     with robot.recorder([motor]) as recorder:
         for t_s in robot.rate(_COMMAND_HZ):
+            if not watch.may_send():
+                continue
             sine = math.sin(2 * math.pi * frequency_hz * t_s)
             target = rc10.velocity_rpm(offset_rpm + amplitude_rpm * sine)
             robot.command({motor: target}, validity_ms=_VALIDITY_MS)
-            if hindrance := obstacle(robot.state, robot.motor(motor)):
-                raise rc10.Rc10Error(hindrance)
             if t_s > settle_s + length_s:
                 break
     recording = recorder.recording()
@@ -107,9 +111,10 @@ def sweep(
 ) -> NDArray[np.complex128]:
     """Runs one sine after the other; the motor has to be ACTIVE."""
     responses = []
+    watch = rc10.Watch(robot, motor)
     for frequency_hz in frequencies:
         for _ in range(_TRIES):
-            response, bad = measure(robot, motor, frequency_hz, amplitude_rpm, offset_rpm)
+            response, bad = measure(robot, watch, motor, frequency_hz, amplitude_rpm, offset_rpm)
             if not bad:
                 break
         responses.append(response)

@@ -29,14 +29,18 @@ class LaggingDaemon(FakeDaemon):
     zeroed = True
     limits = 0
     fault = False
+    # Commands that are not in force any more.
+    lapsed = 0
+    stop_cause = motor_state_t.STOP_NONE
     # The values stay when the target is gone: nothing turns it back.
     velocity_rpm = 0.0
     total_angle_deg = 370.0
     current_a = 0.0
 
     def target(self) -> tuple[int, float]:
-        mode, value = setpoints(self.commands[-1])["wheel"] if self.commands else (0, 0.0)
-        return (mode, value) if "wheel" in self.active else (0, 0.0)
+        if len(self.commands) <= self.lapsed or "wheel" not in self.active:
+            return 0, 0.0
+        return setpoints(self.commands[-1])["wheel"]
 
     def state(self) -> robot_state_t:
         message = super().state()
@@ -52,6 +56,7 @@ class LaggingDaemon(FakeDaemon):
         wheel.current_a = self.current_a
         wheel.zeroed = self.zeroed
         wheel.limits = self.limits
+        wheel.stop_cause = self.stop_cause if wheel.mode == setpoint_t.MODE_COAST else 0
         if self.fault:
             wheel.status, wheel.fault_text = motor_state_t.STATUS_FAULT, "stalled"
         return message
@@ -209,6 +214,69 @@ def test_it_ends_when_something_happens(
     link.after(0.5, lambda: setattr(daemon, attribute, value))
     with pytest.raises(StepFailed, match=message):
         run_step(robot, plan())
+
+
+@pytest.mark.parametrize("after_s", [0.1, 0.5, 0.82])
+def test_a_motor_that_was_stopped_and_enabled_between_two_states_is_not_driven_on(
+    robot: rc10.Robot, daemon: LaggingDaemon, link: VirtualLink, after_s: float
+) -> None:
+    sent: list[int] = []
+
+    def stop() -> None:
+        sent.append(len(daemon.commands))
+        daemon.publish_event(
+            "ACTIVE -> READY (disabled by 'panel')", code=100, mono_us=round(link.now() * 1e6)
+        )
+
+    link.after(after_s, stop)
+    with pytest.raises(StepFailed, match=r"wheel: ACTIVE -> READY \(disabled by 'panel'\)"):
+        run_step(robot, plan(seconds=0.5))
+    link.pump(0.0)
+    # Before the step, in it, and on the way back.
+    assert values(daemon.commands) == {0.1: [0], 0.5: [0, 100], 0.82: [0, 100, 0]}[after_s]
+    assert [len(daemon.commands)] == sent
+
+
+def stand(daemon: LaggingDaemon, link: VirtualLink, cause: int) -> None:
+    """The program stands still for longer than its last target holds."""
+    daemon.lapsed, daemon.stop_cause = len(daemon.commands), cause
+    link.pass_time(2.0)
+
+
+@pytest.mark.parametrize("after_s", [0.1, 0.5, 0.82])
+def test_a_motor_that_was_enabled_anew_while_the_program_stood_is_not_driven_on(
+    robot: rc10.Robot, daemon: LaggingDaemon, link: VirtualLink, after_s: float
+) -> None:
+    link.after(after_s, lambda: stand(daemon, link, motor_state_t.STOP_NONE))
+    with pytest.raises(StepFailed, match="wheel was enabled anew while this program stood still"):
+        run_step(robot, plan(seconds=0.5))
+    link.pump(0.0)
+    assert len(daemon.commands) == daemon.lapsed
+
+
+def test_a_pause_in_which_nobody_stopped_the_motor_does_not_end_the_step(
+    robot: rc10.Robot, daemon: LaggingDaemon, link: VirtualLink
+) -> None:
+    link.after(0.5, lambda: stand(daemon, link, motor_state_t.STOP_TIMEOUT))
+    assert run_step(robot, plan(seconds=4.0)).missing > 0
+    assert values(daemon.commands) == [0, 100, 0]
+
+
+def test_another_client_ends_it_before_the_target_has_acted(
+    robot: rc10.Robot, daemon: LaggingDaemon, link: VirtualLink
+) -> None:
+    daemon.target = lambda: (0, 0.0)  # type: ignore[method-assign]
+    sent: list[int] = []
+
+    def take() -> None:
+        daemon.owner = "remote"
+        sent.append(len(daemon.commands))
+
+    link.after(0.1, take)
+    with pytest.raises(StepFailed, match="held by the client 'remote'"):
+        run_step(robot, plan())
+    link.pump(0.0)
+    assert [len(daemon.commands)] == sent
 
 
 def test_a_lost_reference_ends_it_in_words(

@@ -17,9 +17,21 @@ import time
 
 import lcm
 
-from rc10 import command_t, named_value_t, request_t, response_t, robot_state_t, setpoint_t
+from rc10 import (
+    command_t,
+    event_t,
+    motor_state_t,
+    named_value_t,
+    request_t,
+    response_t,
+    robot_state_t,
+    setpoint_t,
+)
 
 CLIENT = "hello-python"
+MOTOR_STATUS = 100  # code of the events "ACTIVE -> READY (…)"
+PAUSE_US = 100_000  # between two commands: Ctrl-Z, a busy computer
+PATIENCE_US = 1_000_000  # for a state of after it
 
 
 class Program:
@@ -32,9 +44,15 @@ class Program:
         self.session = secrets.randbelow(2**62)  # of this run; a later run has another
         self.seq = 0  # grows with every message of ours
         self.answer = None
+        self.state = motor_state_t()
+        self.state_us = 0
+        self.obeyed = False
         self.printed_us = 0
+        self.commanded_us = 0
+        self.stopped = ""  # by whom or by what
         self.interrupted = False
         self.lcm.subscribe(f"{robot}.v1.state", self.on_state)
+        self.lcm.subscribe(f"{robot}.v1.event", self.on_event)
         self.lcm.subscribe(f"{robot}.v1.response", self.on_response)
 
     def on_interrupt(self, number: int, _: object) -> None:
@@ -48,12 +66,15 @@ class Program:
             self.lcm.handle()
 
     def on_state(self, _: str, data: bytes) -> None:
-        """Prints the motor ten times a second."""
+        """Keeps the motor, and prints it ten times a second."""
         state = robot_state_t.decode(data)
-        if state.mono_us < self.printed_us + 100_000:
-            return
+        self.state_us = state.mono_us
         for motor in state.motors:
-            if motor.name == self.motor:
+            if motor.name != self.motor:
+                continue
+            self.state = motor
+            self.obeyed = self.obeyed or motor.owner == CLIENT
+            if state.mono_us >= self.printed_us + 100_000:
                 self.printed_us = state.mono_us
                 print(
                     f"{motor.name} status {motor.status} owner '{motor.owner}' target "
@@ -61,6 +82,13 @@ class Program:
                     f"{motor.current_a:.2f} A",
                     flush=True,
                 )
+
+    def on_event(self, _: str, data: bytes) -> None:
+        """Keeps that the motor was stopped: enabled by somebody, it is not driven on."""
+        event = event_t.decode(data)
+        of_motor = event.code == MOTOR_STATUS and event.source == self.motor
+        if self.obeyed and of_motor and event.text.startswith("ACTIVE -> "):
+            self.stopped = event.text
 
     def on_response(self, _: str, data: bytes) -> None:
         """Keeps the answer to our request; all clients hear all answers."""
@@ -93,6 +121,21 @@ class Program:
         print(f"hello_motor: no answer to '{operation}': is rc10d running?", file=sys.stderr)
         return False
 
+    def may_go_on(self) -> bool:
+        """Whether the motor may have its next target: it was not stopped, nor in a pause of ours.
+
+        Events of a pause may be lost. A state of after it shows what has become of the target.
+        """
+        resumed_us = now_us = time.monotonic_ns() // 1000
+        if self.obeyed and now_us > self.commanded_us + PAUSE_US:
+            while self.state_us < resumed_us and now_us < resumed_us + PATIENCE_US:
+                self.receive(0.01)
+                now_us = time.monotonic_ns() // 1000
+            lapsed = self.state.owner == "" and self.state.stop_cause == motor_state_t.STOP_TIMEOUT
+            if self.state_us < resumed_us or not (lapsed or self.state.owner == CLIENT):
+                self.stopped = self.stopped or "in a pause of this program"
+        return not self.stopped
+
     def command(self, mode: int, value: float) -> None:
         """Sends one setpoint, which acts for 100 ms."""
         setpoint = setpoint_t()
@@ -105,6 +148,7 @@ class Program:
         message.validity_ms = 100
         message.setpoint_count, message.setpoints = 1, [setpoint]
         self.lcm.publish(f"{self.robot}.v1.command", message.encode())
+        self.commanded_us = time.monotonic_ns() // 1000
 
 
 def main() -> int:
@@ -119,16 +163,19 @@ def main() -> int:
     enabled = program.request("enable")
     try:
         for _ in range(50 if enabled else 0):
-            if program.interrupted:
+            if program.interrupted or not program.may_go_on():
                 break
             program.command(setpoint_t.MODE_VELOCITY, rpm)
             end_s = time.monotonic() + 0.02
             while time.monotonic() < end_s:
                 program.receive(0.005)
     finally:
-        program.command(setpoint_t.MODE_COAST, 0.0)
-        # With our end: what an e-stop holds meanwhile stays held.
-        disabled = program.request("disable", {"at_end": 1.0})
+        if program.stopped:  # and, if it is enabled again, in the hands of another
+            print(f"hello_motor: {motor} was stopped: {program.stopped}", file=sys.stderr)
+        else:
+            program.command(setpoint_t.MODE_COAST, 0.0)
+            # With our end: what an e-stop holds meanwhile stays held.
+            disabled = program.request("disable", {"at_end": 1.0})
     if program.interrupted:
         return 130
     return 0 if enabled and disabled else 1

@@ -19,6 +19,7 @@ from rc10.errors import (
     InvalidSetpoint,
     LinkError,
     MissingPackage,
+    MotorStopped,
     NotReceived,
     Rc10Error,
     RequestError,
@@ -66,6 +67,7 @@ from rc10.state import (
     StopCause,
 )
 from rc10.topics import Publisher, Received, Subscriber
+from rc10.watch import Watch
 
 __version__ = "0.2.0"
 
@@ -90,6 +92,7 @@ __all__ = [
     "ModuleState",
     "MotorState",
     "MotorStatus",
+    "MotorStopped",
     "Move",
     "MoveOutcome",
     "MoveResult",
@@ -119,6 +122,7 @@ __all__ = [
     "Timeout",
     "UnknownMotor",
     "UnknownSignal",
+    "Watch",
     "aio",
     "angle_deg",
     "brake",

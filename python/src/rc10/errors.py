@@ -39,6 +39,10 @@ class CommandRefused(Rc10Error):
     """A setpoint that rc10d would skip, or has refused: the message names motor and remedy."""
 
 
+class MotorStopped(Rc10Error):
+    """A motor to which a loop sends targets was stopped or taken: the message says by what."""
+
+
 class RequestError(Rc10Error):
     """The daemon answered a request with something other than "done".
 

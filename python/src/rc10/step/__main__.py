@@ -13,8 +13,9 @@ from rc10.step.plan import MODES, StepPlan
 
 _EPILOG = """\
 The motor really moves. It is commanded for as long as this runs, with a lease that nobody of the
-same priority can take; then it goes back to where it was, coasts, and is disabled if this has
-enabled it. Ctrl-C lets go at once.
+same priority can take; then it goes back to where it was. One that this has enabled is disabled in
+the end and does its on_disable, another does its on_timeout; by Ctrl-C at once. A motor that was
+stopped meanwhile is not driven on.
 
   python -m rc10.step wheel velocity 100 --enable --png step.png
   python -m rc10.step yaw angle 45 --relative --enable

@@ -32,7 +32,8 @@ class StepPlan:
     tolerance: float = 0.02
     """When it counts as settled, as a part of the step; between 0 and 1."""
     enable: bool = False
-    """Enable the motor, and disable it in the end; else it has to be ACTIVE."""
+    """Enable the motor if it is READY; else it has to be ACTIVE. Its end is the `at_end` of the
+    program's rc10.connect()."""
 
     def __post_init__(self) -> None:
         """Refuses before anything moves."""

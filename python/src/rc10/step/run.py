@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rc10.errors import Rc10Error, Timeout
-from rc10.orders import Order, obstacle, without_reference
+from rc10.errors import MotorStopped, Rc10Error
+from rc10.orders import Order, hindered, obstacle, of_another
 from rc10.setpoints import Mode, Setpoint
 from rc10.state import Limit, MotorState, MotorStatus, RobotState
 from rc10.step.analysis import StepMetrics, analyse
+from rc10.watch import Watch
 
 if TYPE_CHECKING:
     from rc10.client import Robot
@@ -22,8 +23,6 @@ _COMMAND_HZ = 100.0
 _VALIDITY_MS = 150
 # For the first target on its way; after that a state has to show it.
 _ON_ITS_WAY_S = 0.5
-# Silence of states after which rc10d or its gateway has ended.
-_SILENCE_S = 1.0
 # Time limit and tolerance of the way back to where it was.
 _RETURN_S = 2.0
 _RETURNED = 0.05
@@ -38,7 +37,7 @@ _CLIPPED = {
 
 
 class StepFailed(Rc10Error):
-    """The step was not run, or was ended; the motor is let go."""
+    """The step was not run, or was ended; nothing is sent to the motor any more."""
 
 
 @dataclass(frozen=True)
@@ -58,27 +57,32 @@ class StepResult:
 
 
 def run_step(robot: Robot, plan: StepPlan) -> StepResult:
-    """Runs a step and comes back. In the end the motor has the target from before, and coasts.
+    """Runs a step and comes back to the target from before.
 
-    The caller's `with rc10.connect(...)` lets go of the motor and disables it, also after an
-    exception or Ctrl-C.
+    That lapses, or ends with the caller's `with rc10.connect(...)`, also after an exception or
+    Ctrl-C. By the default `at_end="timeout"` the motor then does its `on_timeout` and stays ACTIVE,
+    also one that the plan has enabled; `at_end="disable"` disables it.
+
+    A motor that was stopped, in the step or on the way back, is sent nothing more, whoever enables
+    it.
 
     Raises:
         StepFailed: refused, or the motor stopped obeying; in words.
-        RequestFailed, RequestRefused, Timeout: it could not be enabled.
+        RequestFailed, RequestRefused: it could not be enabled.
+        Timeout: it could not be enabled, or no state has come for a second.
         UnknownMotor: there is no such motor.
     """
     motor = _prepare(robot, plan)
+    watch = Watch(robot, plan.motor, on_angle=plan.mode in _ON_ANGLES)
     start, base, target = _values(plan, motor)
     before = Order(plan.motor, Setpoint(plan.mode, base), robot.client)
     after = Order(plan.motor, Setpoint(plan.mode, target), robot.client)
-    robot.events()
     with robot.recorder([plan.motor]) as recorder:
-        _hold(robot, before, plan.before_s)
+        _hold(robot, watch, before, plan.before_s)
         if plan.mode not in _ON_ANGLES:
             start = base
-        _hold(robot, after, plan.seconds)
-    _return(robot, before)
+        _hold(robot, watch, after, plan.seconds)
+    _return(robot, watch, before)
 
     recording = recorder.recording()
     seen = recording.motor(plan.motor)
@@ -115,16 +119,13 @@ def _measured(mode: Mode) -> str:
 def _prepare(robot: Robot, plan: StepPlan) -> MotorState:
     state = robot.wait_for_state()
     motor = state.motor(plan.motor)
-    if motor.owner not in ("", robot.client):
-        raise StepFailed(f"{plan.motor} is held by the client '{motor.owner}': end that one first")
+    if taken := of_another(motor, robot.client):
+        raise StepFailed(taken)
     if plan.enable and motor.status is MotorStatus.READY and not state.estopped:
         robot.enable(plan.motor)
         state = _state_after(robot)
     motor = state.motor(plan.motor)
-    hindrance = obstacle(state, motor)
-    if not hindrance and plan.mode in _ON_ANGLES:
-        hindrance = without_reference(motor)
-    if hindrance:
+    if hindrance := (hindered if plan.mode in _ON_ANGLES else obstacle)(state, motor):
         ready = motor.status is MotorStatus.READY and not state.estopped
         raise StepFailed(hindrance + (" (--enable does it)" if ready else ""))
     return motor
@@ -161,21 +162,17 @@ def _way(plan: StepPlan, base: float, target: float) -> float:
     return target - base
 
 
-def _hold(robot: Robot, order: Order, seconds: float) -> None:
+def _hold(robot: Robot, watch: Watch, order: Order, seconds: float) -> None:
     """Sends a target until it has acted for so long."""
     began_us: int | None = None
     sent_s = robot.link.now()
     first_us: int | None = None
     for _ in robot.rate(_COMMAND_HZ):
+        if not _may_send(watch, order):
+            continue
         robot.command({order.motor: order.setpoint}, validity_ms=_VALIDITY_MS)
         state = robot.state
         motor = state.motor(order.motor)
-        for event in robot.events():
-            order.on_event(event)
-        if state.age_s > _SILENCE_S:
-            raise Timeout("no state of the robot for a second: did rc10d or rc10-lcm end?")
-        if hindrance := obstacle(state, motor) or _unreferenced(order, motor):
-            raise StepFailed(hindrance)
         if state.taken_at_s < sent_s:
             continue
         first_us = first_us or state.mono_us
@@ -187,14 +184,18 @@ def _hold(robot: Robot, order: Order, seconds: float) -> None:
                 raise StepFailed(refused)
             continue
         _check_limits(order, motor)
-        if motor.owner not in ("", robot.client):
-            raise StepFailed(order.not_obeyed(motor))
         if state.mono_us - began_us >= seconds * 1e6:
             break
 
 
-def _unreferenced(order: Order, motor: MotorState) -> str:
-    return without_reference(motor) if order.setpoint.mode in _ON_ANGLES else ""
+def _may_send(watch: Watch, order: Order) -> bool:
+    try:
+        may = watch.may_send()
+    except MotorStopped as error:
+        raise StepFailed(str(error)) from None
+    for event in watch.events:
+        order.on_event(event)
+    return may
 
 
 def _check_limits(order: Order, motor: MotorState) -> None:
@@ -212,15 +213,15 @@ def _check_limits(order: Order, motor: MotorState) -> None:
         )
 
 
-def _return(robot: Robot, order: Order) -> None:
-    """Goes back to the target from before, for some time at most; then without torque."""
+def _return(robot: Robot, watch: Watch, order: Order) -> None:
+    """Goes back to the target from before, for some time at most; then that lapses."""
     step_at = robot.state.motor(order.motor)
     far = max(abs(_distance(order.setpoint, step_at)), 1e-6)
     for t_s in robot.rate(_COMMAND_HZ):
-        motor = robot.state.motor(order.motor)
-        near = abs(_distance(order.setpoint, motor)) < _RETURNED * far
-        hindrance = obstacle(robot.state, motor) or _unreferenced(order, motor)
-        if near or t_s > _RETURN_S or hindrance:
+        if not _may_send(watch, order):
+            continue
+        near = abs(_distance(order.setpoint, robot.state.motor(order.motor))) < _RETURNED * far
+        if near or t_s > _RETURN_S:
             break
         robot.command({order.motor: order.setpoint}, validity_ms=_VALIDITY_MS)
 
