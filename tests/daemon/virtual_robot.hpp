@@ -138,7 +138,7 @@ class VirtualRobot {
     order.id = ++orders_;
     exchange_.orders.push(order);
     OrderResult result;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 2500; ++i) {  // 2 s for a drive to be enabled
       tick();
       if (exchange_.results.pop(result)) return result;
     }

@@ -58,8 +58,8 @@ class SoloRig {
     motor_->setTarget(target);
   }
 
-  /// The enable sequence, as the supervisor runs it, within a time limit. True: the motor says it is done.
-  bool enable(Duration patience = std::chrono::seconds{1}) {
+  /// The enable sequence, as the supervisor runs it, within its time limit. True: the motor says it is done.
+  bool enable(Duration patience = std::chrono::seconds{2}) {
     motor_->order(FrameKind::kEnable);
     for (const MonotonicTime end = now_ + patience; now_ < end;) {
       run(std::chrono::milliseconds{1});

@@ -36,6 +36,7 @@ SoloRig rigOf(const MotorSettings& settings, const sim::MotorLoad& load = {}) {
 }
 
 sim::VescDrive& driveOf(SoloRig& rig) { return dynamic_cast<sim::VescDrive&>(rig.drive()); }
+bool proven(SoloRig& rig) { return dynamic_cast<VESC_Motor&>(rig.motor()).watchdogProven(); }
 
 constexpr std::array<Mounting, 4> kMountings{{{1.0, 1}, {1.0, -1}, {36.0, 1}, {36.0, -1}}};
 
@@ -233,20 +234,95 @@ TEST(VescClosedLoop, TheWatchdogStopsAMotorThatIsToldNothing) {
   EXPECT_NEAR(rig.drive().physics().currentA(), 0.0, 0.01);
 }
 
-TEST(VescClosedLoop, TheWatchdogIsProvenAtFirstSightOfADriveThatNobodyCommanded) {
+TEST(VescClosedLoop, TheWatchdogOfADriveThatNobodyCommandedIsProvenByOurSilence) {
   auto rig = rigOf(settings());
-  rig.run(10ms);
-  EXPECT_TRUE(dynamic_cast<VESC_Motor&>(rig.motor()).watchdogProven());
+  ASSERT_TRUE(driveOf(rig).timedOut());
+  rig.run(90ms);
+  EXPECT_FALSE(driveOf(rig).timedOut()) << "it is told to rest first";
+  EXPECT_FALSE(proven(rig));
+  rig.run(1410ms);
+  EXPECT_TRUE(proven(rig));
   ASSERT_TRUE(rig.enable(100ms));
+}
+
+TEST(VescClosedLoop, TheWatchdogOfADriveIsProvenWithinTheTimeOfEnabling) {
+  auto rig = rigOf(settings());
+  EXPECT_TRUE(rig.enable(1500ms));
+  auto slow = settings();
+  slow.command_divider = 100;
+  auto told_seldom = rigOf(slow);
+  EXPECT_TRUE(told_seldom.enable(1500ms));
+}
+
+TEST(VescClosedLoop, TheWatchdogThatIsShortIsProvenSoon) {
+  auto rig = rigOf(settings());
+  driveOf(rig).setWatchdog(100ms);
+  EXPECT_TRUE(rig.enable(400ms));
+}
+
+TEST(VescClosedLoop, TheWatchdogIsNotProvenByATimeOutFromBefore) {
+  for (const Duration before : {0ms, 50ms, 5000ms}) {
+    SCOPED_TRACE(before.count());
+    auto rig = rigOf(settings());
+    driveOf(rig).setWatchdog(10s);
+    ASSERT_TRUE(driveOf(rig).timedOut()) << "it was powered long before";
+    rig.run(before);
+    EXPECT_FALSE(proven(rig));
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      EXPECT_FALSE(rig.enable());
+      EXPECT_EQ(rig.motor().sequenceProgress(), SequenceProgress::kFailed);
+      rig.motor().order(FrameKind::kRest);
+      rig.run(1ms);
+    }
+  }
+}
+
+TEST(VescClosedLoop, TheWatchdogIsNotProvenByADriveThatTakesNoCommand) {
+  auto rig = rigOf(settings());
+  rig.lose([](const CanFrame& frame) { return frame.id == vesc::canId(vesc::Packet::kSetCurrent, 7); });
+  rig.run(5s);
+  EXPECT_FALSE(proven(rig));
+  EXPECT_FALSE(rig.enable(500ms));
+  EXPECT_EQ(rig.motor().sequenceProgress(), SequenceProgress::kFailed);
+}
+
+TEST(VescClosedLoop, TheWatchdogIsProvenAnewAfterAGapInWhichItMayHaveBecomeAnotherDrives) {
+  for (const char* angle : {"tachometer", "encoder", "none"}) {
+    for (const auto kind : {FrameKind::kRest, FrameKind::kCommand}) {
+      SCOPED_TRACE(angle);
+      auto rig = rigOf(settings({1.0, 1}, {{"angle", std::string{angle}}}));
+      ASSERT_TRUE(rig.enable());
+      const auto gap = [&](Duration length) {
+        rig.motor().order(kind);
+        rig.run(500ms);
+        rig.cut(true);
+        rig.run(length);
+        rig.cut(false);
+        rig.run(50ms);
+      };
+      gap(250ms);
+      EXPECT_TRUE(proven(rig));
+      gap(400ms);
+      EXPECT_FALSE(proven(rig));
+      rig.motor().order(FrameKind::kRest);
+      rig.run(1500ms);
+      EXPECT_TRUE(proven(rig));
+      driveOf(rig).setWatchdog(10s);  // another drive
+      gap(400ms);
+      rig.motor().order(FrameKind::kRest);
+      rig.run(100ms);
+      EXPECT_FALSE(rig.enable());
+    }
+  }
 }
 
 TEST(VescClosedLoop, TheWatchdogOfADriveThatHasJustStartedIsProvenWhileItRests) {
   auto rig = rigOf(settings());
   rig.drive().restart();
   rig.run(1200ms);  // it starts
-  EXPECT_FALSE(dynamic_cast<VESC_Motor&>(rig.motor()).watchdogProven());
+  EXPECT_FALSE(proven(rig));
   rig.run(1300ms);
-  EXPECT_TRUE(dynamic_cast<VESC_Motor&>(rig.motor()).watchdogProven());
+  EXPECT_TRUE(proven(rig));
   ASSERT_TRUE(rig.enable(100ms));
 }
 

@@ -80,6 +80,8 @@ bool VESC_Motor::status1Fresh(MonotonicTime now) const noexcept {
 
 void VESC_Motor::takeStatus1(const CanFrame& frame) noexcept {
   const vesc::Status1 status = vesc::decodeStatus1(frame);
+  // Every source of the angle has STATUS_1. Firmware before 6.00 does not tell that it has started.
+  if (status1_seen_ && gapTooLong(frame.received - status1_at_)) inquiry_.restart();
   status1_ = status;
   status1_at_ = frame.received;
   status1_seen_ = true;

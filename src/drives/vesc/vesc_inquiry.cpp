@@ -1,5 +1,7 @@
 #include "drives/vesc/vesc_inquiry.hpp"
 
+#include <utility>
+
 namespace rc10 {
 namespace {
 
@@ -7,21 +9,21 @@ using std::chrono::milliseconds;
 
 // A fault shows for at least the 500 ms of MCCONF_M_FAULT_STOP_TIME: asked for every 200 ms it is not missed.
 constexpr Duration kAskEvery = milliseconds{100};
-constexpr Duration kAskWhileEnabling = milliseconds{50};
+constexpr Duration kAskOften = milliseconds{50};  // while somebody waits for it
 constexpr int kMaxUnanswered = 5;
-// Time of rest before the silence, and of an enabled drive to hear us.
+constexpr std::uint32_t kAll = vesc::kAskFault | vesc::kAskStatus;
+// Time of rest before the silence, and of a drive to hear us.
 constexpr Duration kRestFirst = milliseconds{100};
 constexpr Duration kMustHaveHeard = milliseconds{300};
 
-bool atRest(FrameKind kind) noexcept { return dutyOf(kind) == DriveDuty::kRest; }
+bool obeys(FrameKind kind) noexcept { return dutyOf(kind) == DriveDuty::kObey; }
 
 }  // namespace
 
 void VescInquiry::update(const Tick& tick, FrameKind ordered) noexcept {
   now_ = tick.now;
   if (!begun_ || ordered != ordered_) {
-    const bool rested = atRest(ordered_) && atRest(ordered);
-    if (!begun_ || !rested) ordered_since_ = tick.now;
+    if (!begun_ || obeys(ordered_) != obeys(ordered)) ordered_since_ = tick.now;
     if (ordered == FrameKind::kEnable) {
       progress_ = SequenceProgress::kPending;
       fresh_ = 0;
@@ -36,22 +38,25 @@ void VescInquiry::update(const Tick& tick, FrameKind ordered) noexcept {
   ask(tick);
 }
 
+bool VescInquiry::proving() const noexcept { return proof_ == Proof::kOpen && heard_ && !obeys(ordered_); }
+
 void VescInquiry::watchSilence(const Tick& tick) noexcept {
-  const bool may = dutyOf(ordered_) != DriveDuty::kObey;
-  if (!may || proof_ != Proof::kOpen || !heard_) {
+  if (!proving()) {
     silent_ = false;
     return;
   }
-  if (!silent_) {
-    const bool rested = ordered_ == FrameKind::kEnable || tick.now - ordered_since_ >= kRestFirst;
-    if (!rested) return;
-    silent_ = true;
-    silent_since_ = tick.now;
+  if (silent_) {
+    // Asked twice more after it should have tripped.
+    silent_ = tick.now - silent_since_ <= silent_for_ + 3 * kAskEvery;
+    if (!silent_) proof_ = Proof::kRefuted;
+    return;
   }
-  // Asked twice more after it should have tripped.
-  if (tick.now - silent_since_ > silent_for_ + 3 * kAskEvery) {
-    proof_ = Proof::kRefuted;
-    silent_ = false;
+  const Duration rested = tick.now - ordered_since_;
+  if (heard_us_at_ && tick.now - *heard_us_at_ <= kMustHaveHeard) {
+    silent_ = rested >= kRestFirst;
+    silent_since_ = tick.now;
+  } else if (ordered_ == FrameKind::kEnable && told_ && rested > kMustHaveHeard && fresh_ == kAll) {
+    proof_ = Proof::kRefuted;  // told to rest, and it says that it was told nothing
   }
 }
 
@@ -64,7 +69,7 @@ void VescInquiry::enable() noexcept {
     progress_ = SequenceProgress::kFailed;
   } else if (unanswered_ > kMaxUnanswered) {
     progress_ = SequenceProgress::kFailed;
-  } else if (fresh_ == (vesc::kAskFault | vesc::kAskStatus) && proof_ == Proof::kProven) {
+  } else if (fresh_ == kAll && proof_ == Proof::kProven) {
     progress_ = fault_ == 0 && !killed() ? SequenceProgress::kDone : SequenceProgress::kFailed;
   }
 }
@@ -72,7 +77,7 @@ void VescInquiry::enable() noexcept {
 void VescInquiry::ask(const Tick& tick) noexcept {
   question_ = 0;
   const bool enabling = ordered_ == FrameKind::kEnable && progress_ == SequenceProgress::kPending;
-  const Duration every = enabling ? kAskWhileEnabling : kAskEvery;
+  const Duration every = enabling || proving() ? kAskOften : kAskEvery;
   const bool answered = pending_ == 0;
   // While enabling the second question follows the answer to the first at once.
   const bool hurry = enabling && answered && (fresh_ & next_) == 0;
@@ -85,7 +90,7 @@ void VescInquiry::ask(const Tick& tick) noexcept {
 }
 
 void VescInquiry::take(const vesc::Answer& answer) noexcept {
-  heard_ = true;
+  if (!std::exchange(heard_, true)) ordered_since_ = now_;
   fresh_ |= answer.mask;
   if (answer.mask == pending_) {
     pending_ = 0;
@@ -97,9 +102,9 @@ void VescInquiry::take(const vesc::Answer& answer) noexcept {
   }
   status_ = answer.value;
   const bool timed_out = (answer.value & vesc::kTimedOut) != 0;
-  const bool commanded = dutyOf(ordered_) == DriveDuty::kObey;
-  deaf_ = timed_out && commanded && now_ - ordered_since_ >= kMustHaveHeard;
-  if (timed_out) {
+  deaf_ = timed_out && obeys(ordered_) && now_ - ordered_since_ >= kMustHaveHeard;
+  heard_us_at_ = timed_out || !told_ ? std::nullopt : std::optional{now_};
+  if (timed_out && silent_) {
     proof_ = Proof::kProven;
     silent_ = false;
   }
@@ -108,6 +113,8 @@ void VescInquiry::take(const vesc::Answer& answer) noexcept {
 void VescInquiry::restart() noexcept {
   proof_ = Proof::kOpen;
   heard_ = false;
+  told_ = false;
+  heard_us_at_.reset();
   silent_ = false;
   deaf_ = false;
   fault_ = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "app/time.hpp"
 #include "drives/vesc/vesc_frames.hpp"
@@ -9,9 +10,10 @@
 namespace rc10 {
 
 /// Questions to a VESC about state that its status frames lack: its fault, its kill switch, and whether
-/// its watchdog works. The watchdog is proven once after each start of the drive: either the drive says at
-/// first sight that it has timed out, or a motor at rest is told nothing until it does. Pure: frames and time
-/// come in, what to ask goes out. Scheduler thread only.
+/// its watchdog works. The watchdog is proven once after each start of the drive: a motor at rest, which has
+/// said that it hears its commands, is told nothing until it says that it has timed out. A time-out from
+/// before proves nothing: any watchdog trips in a drive that nobody commands. Pure: frames and time come in,
+/// what to ask goes out. Scheduler thread only.
 class VescInquiry {
  public:
   /// `silent_for`: how long a drive is told nothing to see its watchdog.
@@ -20,7 +22,9 @@ class VescInquiry {
   /// Once in each tick, before packing.
   void update(const Tick& tick, FrameKind ordered) noexcept;
   void take(const vesc::Answer& answer) noexcept;
-  /// The drive was restarted: all is to be found out anew.
+  /// A command goes to the drive.
+  void told() noexcept { told_ = true; }
+  /// The drive was restarted, or may be another one: all is to be found out anew.
   void restart() noexcept;
 
   /// Question of this tick; 0: none.
@@ -36,15 +40,18 @@ class VescInquiry {
 
  private:
   enum class Proof : std::uint8_t { kOpen, kProven, kRefuted };
+  /// The watchdog is to be seen, and the drive answers and need not obey.
+  [[nodiscard]] bool proving() const noexcept;
   void watchSilence(const Tick& tick) noexcept;
   void enable() noexcept;
   void ask(const Tick& tick) noexcept;
 
   Duration silent_for_;
   FrameKind ordered_ = FrameKind::kRest;
-  MonotonicTime ordered_since_;
+  MonotonicTime ordered_since_;  ///< To obey, or to rest; and it has answered.
   MonotonicTime asked_;
   MonotonicTime silent_since_;
+  std::optional<MonotonicTime> heard_us_at_;  ///< Its last answer was that it has not timed out.
   MonotonicTime now_;
   std::uint32_t question_ = 0;
   std::uint32_t pending_ = 0;  ///< Asked, not yet answered.
@@ -54,6 +61,7 @@ class VescInquiry {
   Proof proof_ = Proof::kOpen;
   bool begun_ = false;
   bool heard_ = false;  ///< It has answered since it was (re)started.
+  bool told_ = false;   ///< It was sent a command since then.
   bool silent_ = false;
   bool deaf_ = false;
   std::uint8_t fault_ = 0;

@@ -289,6 +289,7 @@ std::size_t VESC_Motor::packCommand(const Tick& tick, std::span<CanFrame> out) n
   const bool silence = own_.ask_status && inquiry_.silence();
   if (!silence && due(tick) && count < out.size()) {
     out[count++] = vesc::makeCommand(command_.packet, id_, command_.raw);
+    inquiry_.told();
   }
   return count;
 }
