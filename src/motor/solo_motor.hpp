@@ -138,6 +138,10 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   [[nodiscard]] float velocityLimitRpm() const noexcept { return velocity_limit_rpm_; }
   /// Period of a tick.
   [[nodiscard]] Duration tickPeriod() const noexcept { return tick_period_; }
+  /// Spacing of its commands.
+  [[nodiscard]] Duration commandPeriod() const noexcept {
+    return static_cast<Duration::rep>(divider_) * tick_period_;
+  }
 
  private:
   [[nodiscard]] Target resolved() noexcept;

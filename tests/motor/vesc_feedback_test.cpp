@@ -186,5 +186,35 @@ TEST_F(VescMotorTest, ANativePositionGoesTheWayThatIsMeantOverTurns) {
   EXPECT_EQ(packet_, vesc::Packet::kSetCurrent);
 }
 
+// At 50 Hz a shaft turns for 21 ms until the command that follows the next sample.
+TEST_F(VescMotorTest, ANativePositionThatTheShaftMayPassByHalfATurnGivesWayToALowerSpeed) {
+  struct Case {
+    double rpm;
+    double target_deg;
+    vesc::Packet packet;
+    std::int32_t raw;
+    double divider = 1.0;
+  };
+  constexpr std::int32_t kSlowErpm = 1667;  // 30 degrees in 21 ms
+  constexpr auto kPosition = vesc::Packet::kSetPosition;
+  constexpr auto kSpeed = vesc::Packet::kSetErpm;
+  for (const Case& c :
+       {Case{400.0, -1000.0, kPosition, 280'000'000}, Case{500.0, -1000.0, kSpeed, kSlowErpm},
+        Case{-500.0, 1000.0, kSpeed, -kSlowErpm}, Case{500.0, -1000.0, kPosition, 280'000'000, 5.0},
+        Case{1100.0, 10.0, kPosition, 10'000'000}, Case{3000.0, 10.0, kSpeed, kSlowErpm},
+        Case{1800.0, 1000.0, kPosition, 100'000'000}, Case{2000.0, 1000.0, kSpeed, kSlowErpm}}) {
+    SCOPED_TRACE(std::to_string(c.rpm) + " rpm, to " + std::to_string(c.target_deg));
+    auto settings = vescSettings({{"ask_status", 0.0}, {"angle", kEncoder}, {"position_divider", c.divider}});
+    settings.feedback_hz = 50;
+    make(settings);
+    status(0);
+    encoder(10.0);
+    ASSERT_TRUE(motor_->setZero(10.0));
+    status(static_cast<std::int32_t>(c.rpm * 7.0));
+    EXPECT_NEAR(sent({.mode = ControlMode::kTotalAngle, .value = c.target_deg}), c.raw, 1);
+    EXPECT_EQ(packet_, c.packet);
+  }
+}
+
 }  // namespace
 }  // namespace rc10::test::vesc_feedback_test

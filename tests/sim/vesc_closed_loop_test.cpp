@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "app/angle.hpp"
+#include "bus/byte_order.hpp"
 #include "drives/vesc/vesc_simulated.hpp"
 #include "sim/solo_rig.hpp"
 #include "support/vesc_motors.hpp"
@@ -346,6 +347,88 @@ TEST(VescClosedLoop, HoldStaysWhereItBegan) {
   rig.motor().order(FrameKind::kHold);
   rig.run(3s);
   EXPECT_NEAR(rig.motor().feedback().total_angle_deg, began, 3.5);
+}
+
+/// A motor with an encoder that has seldom feedback, at 3000 rpm.
+SoloRig fastRig(int direction, double divider) {
+  auto with = settings(
+      {1.0, 1}, {{"angle", std::string{"encoder"}}, {"position_divider", divider}, {"kv_rpm_per_v", 190.0}});
+  with.feedback_hz = 50;
+  sim::MotorLoad load;
+  load.inertia_kg_m2 = 0.002F;
+  auto rig = rigOf(with, load);
+  EXPECT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kVelocity, .value = direction * 3000.0});
+  rig.run(3s);
+  EXPECT_NEAR(rig.drive().physics().outputRpm(), direction * 3000.0, 30.0);
+  return rig;
+}
+
+/// Speed of the shaft, forwards as it turns, and what the drive was told last, as far ahead of the shaft as
+/// it sees it itself.
+struct Seen {
+  double rpm;
+  double ahead_deg = 0.0;
+  double ahead_rpm = 0.0;
+};
+Seen seenOf(SoloRig& rig, int direction, double divider) {
+  const auto& physics = rig.drive().physics();
+  Seen seen{.rpm = direction * physics.outputRpm()};
+  for (const auto& frame : rig.takeSent()) {
+    if (frame.length != 4) continue;  // a question
+    const double raw = readBigEndian<std::int32_t>(frame.payload(), 0);
+    seen.ahead_deg = seen.ahead_rpm = 0.0;
+    if (frame.id == vesc::canId(vesc::Packet::kSetPosition, 7)) {
+      seen.ahead_deg = direction * shortestAngle(physics.outputAngleDeg() / divider, raw / vesc::kPerDegree);
+    } else {
+      EXPECT_EQ(frame.id, vesc::canId(vesc::Packet::kSetErpm, 7));
+      seen.ahead_rpm = direction * raw / 7.0 - seen.rpm;
+    }
+  }
+  return seen;
+}
+
+/// Until the shaft turns back no command leads forwards, whatever the gains of the drive, and its speed
+/// falls.
+void expectOnlyBraked(SoloRig& rig, int direction, double divider) {
+  double least_rpm = 3100.0;
+  (void)rig.takeSent();
+  for (int ms = 0; ms < 3000 && least_rpm > 5.0; ++ms) {
+    rig.run(1ms);
+    const Seen seen = seenOf(rig, direction, divider);
+    ASSERT_LT(seen.ahead_deg, 1.0) << seen.rpm << " rpm after " << ms << " ms";
+    ASSERT_LT(seen.ahead_rpm, 1.0) << seen.rpm << " rpm after " << ms << " ms";
+    ASSERT_LT(seen.rpm, least_rpm + 5.0) << ms;
+    least_rpm = std::min(least_rpm, seen.rpm);
+  }
+  EXPECT_LT(least_rpm, 5.0) << "it slows down";
+}
+
+TEST(VescClosedLoop, AHoldOrAnAngleBegunAtSpeedNeverPushesTheShaftOn) {
+  for (const double divider : {1.0, 2.0}) {
+    for (const int direction : {1, -1}) {
+      for (int phase_ms = 0; phase_ms < 20; phase_ms += 3) {
+        SCOPED_TRACE(std::to_string(divider) + ", " + std::to_string(direction) + ", " +
+                     std::to_string(phase_ms));
+        auto held = fastRig(direction, divider);
+        held.run(std::chrono::milliseconds{phase_ms});
+        const double begun_deg = held.motor().feedback().total_angle_deg;
+        held.motor().order(FrameKind::kHold);
+        ASSERT_NO_FATAL_FAILURE(expectOnlyBraked(held, direction, divider));
+        held.run(10s);
+        EXPECT_NEAR(held.motor().feedback().total_angle_deg, begun_deg, 1.0);
+        EXPECT_NEAR(held.drive().physics().outputRpm(), 0.0, 1.0);
+
+        auto led = fastRig(direction, divider);
+        led.run(std::chrono::milliseconds{phase_ms});
+        const double behind_deg = led.motor().feedback().total_angle_deg - direction * 400.0;
+        led.command({.mode = ControlMode::kTotalAngle, .value = behind_deg});
+        ASSERT_NO_FATAL_FAILURE(expectOnlyBraked(led, direction, divider));
+        led.run(10s);
+        EXPECT_NEAR(led.motor().feedback().total_angle_deg, behind_deg, 1.0);
+      }
+    }
+  }
 }
 
 TEST(VescClosedLoop, TheHandbrakeHoldsAgainstALoad) {

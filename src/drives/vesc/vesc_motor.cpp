@@ -21,8 +21,13 @@ constexpr int kPatiencePeriods = 5;
 // Electrical: from where the handbrake takes over, and from where it has lost.
 constexpr std::int32_t kStillErpm = 150;
 constexpr std::int32_t kSlippedErpm = 450;
-// SET_POS goes the shortest way round: the drive is told no more than this ahead of where it is.
+// SET_POS goes the shortest way round from where the shaft is meanwhile: the drive is told no more than this
+// ahead of the last sample, and nothing that may come to lie farther away, with 30 degrees for late samples
+// and a speed that changes.
 constexpr double kLeadDeg = 90.0;
+constexpr double kFarthestDeg = 150.0;
+// A shaft that is too fast for it is slowed to the speed of this way: a lead against it is near enough then.
+constexpr double kSlowEnoughDeg = 30.0;
 
 std::array<FrameFilter, 8> filtersOf(int id, const VescSettings& own) {
   const auto exactly = [id](vesc::Packet packet) { return FrameFilter{.id = vesc::canId(packet, id)}; };
@@ -233,14 +238,25 @@ float VESC_Motor::stoppableRpm(float error_deg) const noexcept {
                             kDegPerSPerRpm);
 }
 
+double VESC_Motor::degUntilNextSample() const noexcept {
+  const double encoder_rpm = static_cast<double>(status1_.erpm) / own_.pole_pairs / own_.position_divider;
+  const Duration until = std::max(now_ - position_at_, feedbackPeriod()) + commandPeriod();
+  return encoder_rpm * kDegPerSPerRpm * std::chrono::duration<double>(until).count();
+}
+
 void VESC_Motor::setPosition(double total_angle_deg) noexcept {
   const double way = drivePositionFor(total_angle_deg) - position_deg_;
   if (!std::isfinite(way)) {
     release();
     return;
   }
-  seeOwnLimit();
   const double lead_deg = std::clamp(way, -kLeadDeg, kLeadDeg);
+  const double passed_deg = degUntilNextSample();
+  if (std::abs(lead_deg - passed_deg) > kFarthestDeg) {
+    // Not 0: below its minimum ERPM the drive would let go, and a load would go on.
+    return setVelocity(static_cast<double>(feedback_.velocity_rpm) * kSlowEnoughDeg / std::abs(passed_deg));
+  }
+  seeOwnLimit();
   const double next_deg = wrapDegrees(position_deg_ + lead_deg);
   command_ = {vesc::Packet::kSetPosition, vesc::toRaw(next_deg, vesc::kPerDegree)};
   setCommand(lead_deg == way ? total_angle_deg : feedback_.total_angle_deg + toOutput(lead_deg),

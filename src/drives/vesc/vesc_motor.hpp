@@ -71,6 +71,8 @@ class VESC_Motor : public SoloMotor {
   void seeOwnLimit() noexcept;
   void setVelocity(double rpm) noexcept;
   void setPosition(double total_angle_deg) noexcept;
+  /// Way of the encoder until the drive has newer commands from a newer sample.
+  [[nodiscard]] double degUntilNextSample() const noexcept;
   void followDuty(double duty) noexcept;
   void damp() noexcept;
   void brake() noexcept;

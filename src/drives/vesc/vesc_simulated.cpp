@@ -96,11 +96,15 @@ void VescDrive::command(vesc::Packet packet, const CanFrame& frame) noexcept {
   }
   commanded_ = elapsed();
   if (elapsed() < obeys_from_) return;
-  const bool was_regulating = regulating_;
-  braking_ = regulating_ = false;
+  const bool was_regulating = loop_ == Loop::kSpeed;
+  loop_ = Loop::kNone;
   const auto hold = [this](double a) {
     const double nm_per_a = physics().parameters().torque_nm_per_a;
     position(driveAngleDeg(), 0.0, std::abs(a) * nm_per_a);
+  };
+  const auto brake = [this](double a) {
+    loop_ = Loop::kBrake;
+    brake_a_ = a;
   };
   switch (packet) {
     case vesc::Packet::kSetDuty:
@@ -113,15 +117,14 @@ void VescDrive::command(vesc::Packet packet, const CanFrame& frame) noexcept {
     case vesc::Packet::kSetHandbrake: hold(std::min(std::abs(amperes), most)); break;
     case vesc::Packet::kSetHandbrakeRelative: hold(std::min(std::abs(share), 1.0) * most); break;
     case vesc::Packet::kSetErpm:
-      regulating_ = true;
+      loop_ = Loop::kSpeed;
       if (!was_regulating) speed_rpm_ = rotorRpm();
       command_rpm_ = number(0, vesc::kPerErpm) / own_.pole_pairs;
       break;
-    case vesc::Packet::kSetPosition: {
-      const double way = shortestAngle(encoderDeg(), number(0, vesc::kPerDegree));
-      position(driveAngleDeg() + way * own_.position_divider);
+    case vesc::Packet::kSetPosition:
+      loop_ = Loop::kPlace;
+      place_deg_ = number(0, vesc::kPerDegree);
       break;
-    }
     default: break;
   }
 }
@@ -136,13 +139,14 @@ void VescDrive::question(const CanFrame& frame) noexcept {
   answer(makeClassicFrame(vesc::canId(vesc::Packet::kProcessShortBuffer, frame.data[0]), reply));
 }
 
-void VescDrive::brake(double rotor_a) noexcept {
-  braking_ = true;
-  brake_a_ = rotor_a;
-}
-
-void VescDrive::stepBrake() noexcept {
-  current(-brake_a_ * std::clamp(rotorRpm() / kBrakeFadeRpm, -1.0, 1.0));
+void VescDrive::stepLoop(Duration dt) noexcept {
+  switch (loop_) {
+    case Loop::kNone: return;
+    case Loop::kBrake: return current(-brake_a_ * std::clamp(rotorRpm() / kBrakeFadeRpm, -1.0, 1.0));
+    case Loop::kSpeed: return stepSpeed(dt);
+    case Loop::kPlace:  // the shortest way from where it is now, as foc_run_pid_control_pos() goes
+      return position(driveAngleDeg() + shortestAngle(encoderDeg(), place_deg_) * own_.position_divider);
+  }
 }
 
 void VescDrive::stepSpeed(Duration dt) noexcept {
@@ -159,11 +163,10 @@ void VescDrive::step(Duration dt) noexcept {
   for (Duration left = dt; left > Duration::zero();) {
     const Duration part = std::min(left, MotorPhysics::kLongestStep);
     if (booting_ || timedOut() || elapsed() < obeys_from_) {
-      braking_ = regulating_ = false;
+      loop_ = Loop::kNone;
       release();  // with the stock brake current of 0 A
     }
-    if (braking_) stepBrake();
-    if (regulating_) stepSpeed(part);
+    stepLoop(part);
     ServoDrive::step(part);
     left -= part;
   }
@@ -229,7 +232,7 @@ std::size_t VescDrive::feedback(std::span<CanFrame> out) noexcept {
 void VescDrive::restart() noexcept {
   release();
   booting_ = true;
-  braking_ = regulating_ = false;
+  loop_ = Loop::kNone;
   fault_ = 0;
   obeys_from_ = {};
   speaks_from_ = elapsed() + kBoot;

@@ -31,8 +31,9 @@ class VescDrive : public ServoDrive {
  private:
   void command(vesc::Packet packet, const CanFrame& frame) noexcept;
   void question(const CanFrame& frame) noexcept;
-  void brake(double rotor_a) noexcept;
-  void stepBrake() noexcept;
+  /// Quantity that it regulates itself in each step, beyond ServoDrive's modes.
+  enum class Loop : std::uint8_t { kNone, kBrake, kSpeed, kPlace };
+  void stepLoop(Duration dt) noexcept;
   void stepSpeed(Duration dt) noexcept;
   [[nodiscard]] double dutyNow() const noexcept;
   [[nodiscard]] double encoderDeg() const noexcept;
@@ -50,10 +51,10 @@ class VescDrive : public ServoDrive {
   bool booting_ = false;
   std::uint8_t fault_ = 0;
   double brake_a_ = 0.0;
-  bool braking_ = false;
-  bool regulating_ = false;
+  Loop loop_ = Loop::kNone;
   double speed_rpm_ = 0.0;    ///< Rotor; ramps to the command.
   double command_rpm_ = 0.0;  ///< Rotor.
+  double place_deg_ = 0.0;    ///< A value of encoderDeg().
   double divided_zero_deg_ = 0.0;
   std::int64_t steps_zero_ = 0;
 };
