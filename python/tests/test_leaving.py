@@ -107,7 +107,7 @@ def test_leaving_may_disable_and_nothing_else(daemon: FakeDaemon, link: VirtualL
 
 @pytest.fixture
 def given(link: VirtualLink) -> list[signals_t]:
-    """What the module `base` was sent."""
+    """Messages for the module `base`."""
     given: list[signals_t] = []
     rc10.Subscriber(link, "demo.v1.base", signals_t, given.append)
     return given

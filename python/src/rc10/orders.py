@@ -82,7 +82,7 @@ def hindered(state: RobotState, motor: MotorState) -> str:
 
 
 def of_another(motor: MotorState, client: str) -> str:
-    """Who else holds a motor, and what to do; empty if nobody."""
+    """Holder of a motor that is somebody else, and the remedy; empty: none."""
     if motor.owner in ("", client):
         return ""
     return (

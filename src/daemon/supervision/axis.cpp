@@ -219,7 +219,7 @@ Axis::Trip Axis::trips(bool reduced, const Tick& tick) noexcept {
 
 Axis::Trip Axis::tripsWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept {
   using Motion = ReducedMotion::Motion;
-  // What only resists is not ended for a speed: a load would fall.
+  // A resistance is not ended for a speed: a load would fall.
   const bool brakes = !fallback_.acts() && in_force_.mode == ControlMode::kBrake;
   const bool resists_it = brakes ? resists(FrameKind::kBrake, motor_.driveFrames())
                                  : fallback_.acts() && resists(fallback_.kind(), motor_.driveFrames());

@@ -172,7 +172,7 @@ AbsoluteEncoder encoderOf(std::string_view name) {
                        [name](const AbsoluteEncoder& each) { return each.name == name; });
 }
 
-// What holds it spares it the sequence of enabling, and so its count is not asked for.
+// A motor that is held is enabled without the sequence, so that its count is not asked for.
 TEST(LostAngleOfARobStride, StaysInDoubtThroughAHoldAndEndsWithTheDisableThatLetsGo) {
   auto config = robotOfArm(encoderOf("RobStride"), ", feedback_timeout_ms: 400, on_disable: hold", 0.0, "");
   VirtualRobot robot(config);

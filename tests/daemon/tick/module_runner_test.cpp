@@ -165,7 +165,7 @@ TEST_F(ModuleRunnerTest, AMessageThatIsTooOldEndsWhatItsClientSaidBefore) {
   EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
 }
 
-// What the client library sends when its program leaves.
+// Message of the client library when its program leaves.
 TEST_F(ModuleRunnerTest, TheSameInputsForAMillisecondEndThoseBefore) {
   const ScriptedType type;
   start({{&type, 0}});
