@@ -47,6 +47,26 @@ if [ -n "$(ls -A "$venv" 2>/dev/null)" ] && [ ! -e "$venv/.inputs" ]; then
     echo "venv: $venv has files that this script did not make: remove them, or name another folder with RC10_VENV" >&2
     exit 1
 fi
+# others: what the folder has beside .inputs and what was there before.
+others() {
+    find "$venv" -mindepth 1 -maxdepth 1 ! -path "$venv/.inputs" ! -path "$venv/.before" "$@"
+}
+
+# One that works stays until another one does: there may be no network. It lies in .before meanwhile, with its .inputs,
+# and with the file .moved as soon as all of it is there.
+put_back() {
+    trap '' INT TERM HUP
+    [ ! -e "$venv/.before/.moved" ] || others -exec rm -rf {} +
+    rm -f "$venv/.before/.moved"
+    find "$venv/.before" -mindepth 1 -maxdepth 1 ! -name .inputs -exec mv -t "$venv" {} +
+    mv "$venv/.before/.inputs" "$venv/.inputs"
+    rmdir "$venv/.before"
+    trap - INT TERM HUP
+    echo "venv: $venv is as it was before" >&2
+}
+
+# It was ended in the middle, and could not say so.
+[ -s "$venv/.inputs" ] || [ ! -e "$venv/.before/.inputs" ] || put_back
 client_hash=$(inputs "${client[@]}") all_hash=$(inputs "${client[@]}" "${all[@]}")
 made_from=$(cat "$venv/.inputs" 2>/dev/null || true)
 pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
@@ -57,30 +77,17 @@ install() {
     "${pip[@]}" --require-hashes --requirement="$venv/.requirements" >&2
 }
 
-# others: what the folder has beside .inputs and what was there before.
-others() {
-    find "$venv" -mindepth 1 -maxdepth 1 ! -path "$venv/.inputs" ! -path "$venv/.before" "$@"
-}
-
-# One that works stays in use until another one does: there may be no network.
-# shellcheck disable=SC2317  # called by the trap
-put_back() {
-    others -exec rm -rf {} +
-    find "$venv/.before" -mindepth 1 -maxdepth 1 -exec mv -t "$venv" {} +
-    rmdir "$venv/.before"
-    echo "$made_from" >"$venv/.inputs"
-    echo "venv: $venv is as it was before" >&2
-}
-
 if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
     echo "venv: making $venv${made_from:+ anew: what it is made from has changed}" >&2
-    : >"$venv/.inputs"
-    rm -rf "$venv/.before"
     if [ -n "$made_from" ]; then
-        mkdir "$venv/.before"
+        mkdir -p "$venv/.before"
+        cp "$venv/.inputs" "$venv/.before/.inputs"
+        : >"$venv/.inputs"
         trap put_back EXIT
         others -exec mv -t "$venv/.before" {} +
+        touch "$venv/.before/.moved"
     else
+        : >"$venv/.inputs"
         others -exec rm -rf {} +
     fi
     "$base" -m venv "$venv" >&2
@@ -89,12 +96,12 @@ if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
     "${pip[@]}" --no-build-isolation --no-deps --editable "$repo/python" >&2
     made_from=$client_hash
     echo "$made_from" >"$venv/.inputs"
-    trap - EXIT
-    rm -rf "$venv/.before"
 fi
 if [ "$wanted" = all ] && [ "$made_from" != "$all_hash" ]; then
     echo "venv: adding to $venv what tests and tools need" >&2
     install "${all[@]}"
     echo "$all_hash" >"$venv/.inputs"
 fi
+trap - EXIT
+rm -rf "$venv/.before"
 echo "$venv/bin/python"

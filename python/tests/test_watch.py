@@ -74,6 +74,32 @@ def test_after_a_pause_it_waits_for_a_state_of_after_it(
     assert turns(robot, watch, 0.02)[-1]
 
 
+def test_two_of_them_hear_each_event(
+    robot: rc10.Robot, watch: rc10.Watch, daemon: FakeDaemon
+) -> None:
+    other = rc10.Watch(robot, "wheel")
+    stopped(daemon, robot.state.mono_us + 1)
+    robot.spin(0.02)
+    for each in (watch, other):
+        with pytest.raises(rc10.MotorStopped, match="disabled by 'panel'"):
+            each.may_send()
+    assert [event.source for event in robot.events()] == ["wheel"], "they are the program's, too"
+
+
+def test_a_slow_loop_gives_it_a_longer_pause(robot: rc10.Robot, watch: rc10.Watch) -> None:
+    def slowly() -> None:
+        for _ in robot.rate(5):
+            watch.may_send()
+
+    with pytest.raises(ValueError, match="give Watch a longer one"):
+        slowly()
+    patient = rc10.Watch(robot, "wheel", pause_s=0.5)
+    for t_s in robot.rate(5):
+        assert patient.may_send()
+        if t_s > 2.0:
+            break
+
+
 def test_silence_ends_it(
     robot: rc10.Robot, watch: rc10.Watch, daemon: FakeDaemon, link: VirtualLink
 ) -> None:

@@ -144,9 +144,34 @@ def test_one_that_works_stays_until_another_one_does(
     assert (tmp_path / "venv" / "bin" / "python").exists()
     monkeypatch.delenv("OFFLINE")
     assert environment.make("client") == [asked(CLIENT), ITSELF]
-    assert sorted(path.name for path in (tmp_path / "venv").iterdir()) == [
+    left = [path.name for path in (tmp_path / "venv").iterdir()]
+    assert sorted(left) == [
         ".inputs",
         ".requirements",
+        "bin",
+        "pyvenv.cfg",
+    ]
+
+
+@pytest.mark.parametrize("moved", [True, False])
+def test_one_that_works_is_found_again_after_a_kill(
+    moved: bool, environment: Environment, tmp_path: Path
+) -> None:
+    """While it was moved away, or while its successor was made."""
+    environment.make("client")
+    venv = tmp_path / "venv"
+    before = venv / ".before"
+    before.mkdir()
+    (venv / ".inputs").rename(before / ".inputs")
+    (venv / ".inputs").write_text("")
+    (venv / "bin").rename(before / "bin")
+    if moved:
+        (venv / "pyvenv.cfg").rename(before / "pyvenv.cfg")
+        (before / ".moved").touch()
+        (venv / "half").touch()
+    assert environment.make("client") == []
+    assert sorted(path.name for path in venv.iterdir() if path.name != ".requirements") == [
+        ".inputs",
         "bin",
         "pyvenv.cfg",
     ]

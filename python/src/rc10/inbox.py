@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
+from weakref import WeakSet
 
 from rc10.diagnostics import Diagnostics
 from rc10.events import Event
@@ -23,12 +24,19 @@ if TYPE_CHECKING:
 STATE_QUEUE = 100
 _WAIT_FOR_LIVE_S = 0.5
 
-_EVENTS_KEPT = 1000
+EVENTS_KEPT = 1000
 _DIAGNOSTICS_QUEUE = 10
 
 # A state that is older than the known one by less than this has been overtaken on its way; by
 # more, and the daemon's host has started again.
 _OVERTAKEN_US = 1_000_000
+
+
+class Hearer(Protocol):
+    """Hears events."""
+
+    def hear(self, event: Event) -> None:
+        """While the program receives."""
 
 
 class Inbox:
@@ -45,19 +53,21 @@ class Inbox:
     def __init__(self, robot: str, link: Link, decoder: Decoder) -> None:
         self.state: RobotState | None = None
         self.diagnostics: Diagnostics | None = None
-        self.events: deque[Event] = deque(maxlen=_EVENTS_KEPT)
+        self.events: deque[Event] = deque(maxlen=EVENTS_KEPT)
         self.on_event: Callable[[Event], None] | None = None
         self._link = link
         self._decoder = decoder
         self._host_clock = HostClock()
         self.on_state: list[Callable[[RobotState], None]] = []
+        # Those who also hear each event, as long as they live.
+        self.hearers: WeakSet[Hearer] = WeakSet()
         self._waiting: list[bytes] = []
         self._states_seen = 0
         self._last = True
         self._channel = f"{robot}.v1."
         link.subscribe(self._channel + "state", self._on_state, STATE_QUEUE)
         link.subscribe(self._channel + "diagnostics", self._on_diagnostics, _DIAGNOSTICS_QUEUE)
-        link.subscribe(self._channel + "event", self._on_event, _EVENTS_KEPT)
+        link.subscribe(self._channel + "event", self._on_event, EVENTS_KEPT)
 
     def pump(self, timeout_s: float) -> int:
         """Waits at most `timeout_s` for a message, takes all that wait, returns their number."""
@@ -128,5 +138,7 @@ class Inbox:
         event = self._decoder.decode(self._channel + "event", event_t.decode, Event.from_lcm, data)
         if event is not None:
             self.events.append(event)
+            for hearer in tuple(self.hearers):
+                hearer.hear(event)
             if self.on_event is not None:
                 self.on_event(event)

@@ -54,14 +54,12 @@ void DisableAtEnd::finish(const OrderResult& result, const Snapshot& now) {
   for (std::size_t i = 0; i < result.motors.size(); ++i) {
     if (result.refused || result.motors[i] != Refusal::kNone) enabled.reset(i);
   }
-  for (auto& entry : entries_) {
-    if (entry.enabled_at) {
-      entry.motors &= ~enabled;
-    } else if (entry.order == result.id) {
-      entry.motors = enabled;
-      entry.enabled_at = now.tick;
-    }
-  }
+  const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& one) {
+    return !one.enabled_at && one.order == result.id;
+  });
+  if (entry == entries_.end()) return;
+  entry->motors = enabled;
+  entry->enabled_at = now.tick;
 }
 
 std::optional<Order> DisableAtEnd::due(const Snapshot& now,
@@ -80,7 +78,8 @@ std::optional<Order> DisableAtEnd::due(const Snapshot& now,
       // The disable of one that is off lets go of nothing, and ends the return of its group.
       const auto what = !ended ? Now::kWait : off ? Now::kDisable : whatToDoWith(motor, entry.client);
       // Off for another reason, it is nobody's: what enables it next is another request.
-      if ((off && !mayReturn(motor)) || what == Now::kLeave) {
+      const bool another_has = motor.enabled_by != entry.order;
+      if (another_has || (off && !mayReturn(motor)) || what == Now::kLeave) {
         entry.motors.reset(i);
       } else if (what == Now::kDisable) {
         due.set(i);

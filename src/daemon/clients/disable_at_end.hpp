@@ -24,7 +24,7 @@ class DisableAtEnd {
 
   /// This order asks for it.
   void add(const Order& order, std::uint64_t connection);
-  /// Motors that were on before are another's; those that another order switches on are so from then on.
+  /// Motors that were on before are another's.
   void finish(const OrderResult& result, const Snapshot& now);
 
   /// Order for the motors of connections that have ended, as soon as the last target is over. A motor that

@@ -26,7 +26,8 @@ struct MotorSnapshot {
 #undef RC10_FIELD
   MonotonicTime command_received{};  ///< Time of the command in force, a module's: its tick; 0: none is.
   Acting acting = Acting::kNothing;
-  Stop stop;  ///< Reason why it does not obey.
+  Stop stop;                     ///< Reason why it does not obey.
+  std::uint64_t enabled_by = 0;  ///< Order that enabled it last. The return of its group is none.
   std::uint32_t limits = 0;
   FaultCode fault = FaultCode::kNone;
   MotorStatus status = MotorStatus::kOffline;

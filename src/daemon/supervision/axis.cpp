@@ -51,6 +51,7 @@ void Axis::fill(MotorSnapshot& snapshot) const noexcept {
                                : std::numeric_limits<double>::quiet_NaN();
   snapshot.command_received = lease_.received();
   snapshot.stop = stop_;
+  snapshot.enabled_by = enabled_by_;
 }
 
 Acting Axis::acting() const noexcept {

@@ -97,6 +97,8 @@ class Axis {
   [[nodiscard]] std::optional<SkipReason> whySkipped(const Target& target) const noexcept;
   /// Before MotorEvent::kEnable.
   void prepareEnabling(const Tick& tick) noexcept;
+  /// The order that has just enabled it.
+  void noteEnabledBy(std::uint64_t order) noexcept { enabled_by_ = order; }
   /// Before MotorEvent::kClear: the drive clears its faults.
   void clearFault(const Tick& tick) noexcept;
   void endFallback() noexcept { fallback_.end(); }
@@ -201,6 +203,7 @@ class Axis {
   bool reference_known_ = false;  ///< In the last tick.
   std::uint64_t losses_ = 0;      ///< Losses of its reference, up to the last tick.
   std::uint64_t samples_ = 0;     ///< Count of its feedback in the last tick.
+  std::uint64_t enabled_by_ = 0;  ///< MotorSnapshot::enabled_by
   Duration unheard_{};           ///< Time since it was heard, less what is excused; a pause of this thread is
                                  ///< two periods of it.
   bool pause_forgiven_ = false;  ///< Since it was heard.

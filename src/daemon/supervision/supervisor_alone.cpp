@@ -18,6 +18,7 @@ Refusal Supervisor::enableAlone(std::size_t motor, const Tick& tick) noexcept {
   alone_ = motor;
   const auto refusal = enable(motor, {}, tick);
   if (!isOn(axes_[motor].status())) alone_.reset();
+  if (refusal != Refusal::kNone) return refusal;
   for (auto& group : groups_) group.rearm.reset();  // or it would come back when this one ends
   return refusal;
 }

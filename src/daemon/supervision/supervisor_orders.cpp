@@ -179,7 +179,9 @@ void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
         const bool was_on = isOn(axes_[motor].status());
         const auto refusal = alone ? enableAlone(motor, tick) : enable(motor, order.motors, tick);
         result.motors[motor] = refusal;
-        result.switched_on.set(motor, !was_on && refusal == Refusal::kNone);
+        const bool switched_on = !was_on && refusal == Refusal::kNone;
+        result.switched_on.set(motor, switched_on);
+        if (switched_on) axes_[motor].noteEnabledBy(order.id);
         result.in_the_way |= inTheWay(motor, refusal, order.motors);
         const bool enabling = axes_[motor].status() == MotorStatus::kEnabling;
         if (refusal == Refusal::kNone && enabling) waiting.set(motor);

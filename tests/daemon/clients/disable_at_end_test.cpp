@@ -42,7 +42,9 @@ class DisableAtEndTest : public ::testing::Test {
     if (offline) result.motors[*offline] = Refusal::kOffline;
     at_end.finish(result, *now);
     for (std::size_t i = 0; i < 2; ++i) {
-      if (motors.test(i) && i != offline) motor(i).status = MotorStatus::kActive;
+      if (!motors.test(i) || i == offline) continue;
+      motor(i).status = MotorStatus::kActive;
+      motor(i).enabled_by = order.id;
     }
     now->tick += 2;
   }
@@ -122,10 +124,10 @@ TEST_F(DisableAtEndTest, AMotorThatAnotherRequestBringsBackIsThatOnes) {
   motor(kLeft).status = MotorStatus::kReady;
   motor(kLeft).stop.cause = StopCause::kGroup;
   EXPECT_FALSE(due(true));
-  OrderResult result;
-  result.id = 8;
-  result.switched_on = MotorSet{0b01};
-  at_end.finish(result, *now);
+  // Its drive has not answered yet.
+  motor(kLeft).status = MotorStatus::kEnabling;
+  motor(kLeft).enabled_by = 8;
+  EXPECT_FALSE(due());
   motor(kLeft).status = MotorStatus::kActive;
   EXPECT_FALSE(due());
 }
@@ -192,10 +194,13 @@ TEST_F(DisableAtEndLinkTest, AClientThatIsKilledHasItsMotorDisabled) {
   request.client = "web-1";
   ASSERT_TRUE(client->send(request));
   pump();
-  finish(takeOrder());
+  const auto enabling = takeOrder();
+  const auto order_id = enabling.id;
+  finish(enabling);
   ASSERT_TRUE(await<link::Response>(*client));
   for (int i = 0; i < 3; ++i) {
     exchange.snapshot.slot().motors[kLeft].status = MotorStatus::kActive;
+    exchange.snapshot.slot().motors[kLeft].enabled_by = order_id;
     publishSnapshot(10);
   }
   client->leave();
