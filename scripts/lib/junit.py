@@ -4,7 +4,8 @@
 junit.py REPORT COMMAND...            the path REPORT is appended to the command
 junit.py --folder FOLDER COMMAND...   the command's programs write their reports to this folder,
                                       each NAME.xml, and NAME.unfinished until its end;
-                                      FOLDER.names has the names
+                                      FOLDER.names has the names, of which
+                                      --only PROGRAM and --but PROGRAM choose
 """
 
 from __future__ import annotations
@@ -83,21 +84,36 @@ def cases_of(report: Path) -> list[ET.Element]:
     return [case for case in cases if case.get("status") in ("run", "notrun")]
 
 
+def chosen(names: list[str], command: list[str]) -> tuple[list[str], list[str]]:
+    """Names of the programs that --only or --but leaves, and the command without it."""
+    if command[0] not in ("--only", "--but"):
+        return names, command
+    choice, program, *command = command
+    return [
+        name for name in names if (program_of(name) == program) == (choice == "--only")
+    ], command
+
+
+def program_of(name: str) -> str:
+    """Program of a shard."""
+    return name.partition(".")[0]
+
+
 def run_in(folder: Path, command: list[str]) -> tuple[int, list[ET.Element]]:
     """Exit status and cases of a command whose programs write their reports to this folder.
 
     Each does so in shards, PROGRAM.0, PROGRAM.1 and so on, of which some may have no test.
     """
-    names = folder.with_suffix(".names").read_text().split()
+    names, command = chosen(folder.with_suffix(".names").read_text().split(), command)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     status = run(command)
-    cases, empty = [], {name.partition(".")[0] for name in names}
+    cases, empty = [], {program_of(name) for name in names}
     for name in names:
         of_shard = cases_of(folder / f"{name}.xml")
         cases += of_shard
         if of_shard:
-            empty.discard(name.partition(".")[0])
+            empty.discard(program_of(name))
         if (folder / f"{name}.unfinished").exists():
             cases.append(failure(f"{name}, which ended amidst its tests"))
         elif not (folder / f"{name}.xml").exists():

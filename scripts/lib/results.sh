@@ -76,11 +76,13 @@ junit() {
     suite "$1" "$repo/scripts/lib/junit.py" "$scratch/report.xml" "${@:2}"
 }
 
-# ctest_in PRESET: every C++ test of a build.
+# ctest_in PRESET [only|but PROGRAM]: every C++ test of a build, or those of one program, or all others.
 ctest_in() {
-    local tree=$repo/build/$1
-    suite "ctest, $1" "$repo/scripts/lib/junit.py" --folder "$tree/test-reports" \
-        ctest --test-dir "$tree" --parallel "${RC10_JOBS:-$(nproc)}" --output-on-failure --no-tests=error
+    local tree=$repo/build/$1 reports=() tests=()
+    [ "${2:-}" != only ] || { reports=(--only "$3") && tests=(--tests-regex "^$3[.]"); }
+    [ "${2:-}" != but ] || { reports=(--but "$3") && tests=(--exclude-regex "^$3[.]"); }
+    suite "ctest, $*" "$repo/scripts/lib/junit.py" --folder "$tree/test-reports" "${reports[@]}" \
+        ctest --test-dir "$tree" "${tests[@]}" --parallel "${RC10_JOBS:-$(nproc)}" --output-on-failure --no-tests=error
 }
 
 # pytest_in FOLDER [OPTION...]

@@ -1,5 +1,5 @@
 #!/bin/bash
-# ten minutes of robot time full of random faults and three of matches, in virtual time, judged after every tick (RC10_SOAK_HOURS a seed, RC10_SOAK_SEED, RC10_MATCH_HOURS)
+# ten minutes of robot time full of random faults and three of matches, in virtual time, judged after every tick; the proof that their oracle sees (RC10_SOAK_HOURS a seed, RC10_SOAK_SEED, RC10_MATCH_HOURS)
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
@@ -15,7 +15,7 @@ soak() {
 }
 
 # Two seeds, side by side, and after the shorter the matches.
-if must_build dev rc10_soak rc10_match; then
+if must_build dev rc10_soak rc10_match faults_test; then
     soak "$seed" >"$scratch/other" 2>&1 &
     other=$!
     suite "rc10_soak, seed 1" soak 1
@@ -24,5 +24,6 @@ if must_build dev rc10_soak rc10_match; then
     wait "$other" || status=$?
     # shellcheck disable=SC2016  # for the inner shell
     suite "rc10_soak, seed $seed" sh -c 'cat "$1"; exit "$2"' sh "$scratch/other" "$status"
+    ctest_in dev only faults_test
 fi
 finish

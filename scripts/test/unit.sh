@@ -8,7 +8,7 @@ need build test
 need_python
 
 if must_build dev; then
-    ctest_in dev
+    ctest_in dev but faults_test # the soak's, which takes as long as all others
     suite tests/install "$repo/tests/install/run" "$repo/build/dev"
 fi
 pytest_in python

@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import junit
+import pytest
 
 REPO = Path(__file__).resolve().parents[2]
 
@@ -69,6 +70,21 @@ def test_reports_of_an_earlier_run_do_not_count(tmp_path: Path) -> None:
     assert status == 1
     assert "FAILED a.0, which left no report" in said
     assert said[-1] == "0 passed, 2 failed, 0 skipped"
+
+
+@pytest.mark.parametrize(
+    ("choice", "program", "missing"),
+    [("--only", "a", False), ("--but", "b", False), ("--but", "a", True)],
+)
+def test_of_the_programs_those_that_are_chosen_have_to_report(
+    choice: str, program: str, missing: bool, tmp_path: Path
+) -> None:
+    reports = reports_of(tmp_path, "a.0", "b.0")
+    (tmp_path / "report").write_text(CASES.replace("<failure", "<properties"))
+    does = runner(tmp_path, f"cp '{tmp_path}/report' '{reports}/a.0.xml'")
+    status, said = tell("--folder", reports, choice, program, does)
+    assert (status == 1) == missing
+    assert ("FAILED b.0, which left no report" in said) == missing
 
 
 def test_a_shard_without_a_report_has_failed(tmp_path: Path) -> None:
