@@ -28,6 +28,7 @@ void InputsInForce::give(const std::string& module, const Signals& inputs, const
 
 std::vector<std::string> InputsInForce::modules() const {
   std::vector<std::string> names;
+  names.reserve(by_module_.size());
   for (const auto& [module, timed] : by_module_) names.push_back(module);
   return names;
 }

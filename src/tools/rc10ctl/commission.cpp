@@ -104,6 +104,7 @@ Result<void> requireNoLoop(const Global& global, const link::Welcome& welcome, s
   const auto lines = untestedLoops(*motor);
   if (lines.empty()) return {};
   std::vector<std::string> meanwhile;
+  meanwhile.reserve(lines.size());
   for (const auto& line : lines) meanwhile.push_back(line.substr(0, line.find(':')) + ": coast");
   return fail(name + " has " + quoted(lines) +
               ": a loop that would act when the spin is over, paused or stopped, and drive it on if the sign "

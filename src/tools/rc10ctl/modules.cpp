@@ -248,6 +248,7 @@ class Signalling {
 
   std::vector<std::string> namesOf(const std::vector<std::size_t>& motors) const {
     std::vector<std::string> names;
+    names.reserve(motors.size());
     for (const auto motor : motors) names.emplace_back(rc10d_.welcome().motors[motor].name.view());
     return names;
   }
