@@ -421,13 +421,7 @@ TEST_F(HomingJoint, AnAxisThatBeginsAtItsStopIsHomed) {
 }
 
 TEST_F(HomingJoint, FindsItsReferenceAtASwitch) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"switch"});
-  own.own.set("switch", std::string{"limit.closed"});
-  build(own);
-  robot_.motor(0).feedback.zeroed = false;
-  stop_deg_ = -15.0;
-  showSwitch();
+  buildHoming("switch");
   ask(kNoSignal, 1.0);
   run(3000);
   EXPECT_THAT(events_, ElementsAre(0U));
@@ -435,12 +429,7 @@ TEST_F(HomingJoint, FindsItsReferenceAtASwitch) {
 }
 
 TEST_F(HomingJoint, DoesNotLookForASwitchThatNobodyHears) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"switch"});
-  own.own.set("switch", std::string{"limit.closed"});
-  build(own);
-  robot_.motor(0).feedback.zeroed = false;
-  showSwitch();
+  buildHoming("switch");
   ask(kNoSignal, 1.0);
   run(100);
   ASSERT_EQ(state(), kHoming);
@@ -453,10 +442,7 @@ TEST_F(HomingJoint, DoesNotLookForASwitchThatNobodyHears) {
 }
 
 TEST_F(HomingJoint, GivesUpNoAngleForASwitchThatNobodyHears) {
-  auto own = jointSettings();
-  own.own.set("homing", std::string{"switch"});
-  own.own.set("switch", std::string{"limit.closed"});
-  build(own);
+  buildHoming("switch");
   robot_.motor(0).feedback.zeroed = true;
   switch_heard_ = false;
   showSwitch();

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import secrets
 import sys
+import time
 from pathlib import Path
+from typing import Protocol
 
 # Size limit of a name on the daemon's side; the daemon would refuse what a longer one says.
 MAX_CLIENT_BYTES = 31
@@ -18,6 +20,15 @@ def shortened(client: str) -> str:
 def client_name(client: str | None) -> str:
     """Returns `client`, or the program's name, as much of it as a client may have."""
     return client or shortened(Path(sys.argv[0]).stem) or "python"
+
+
+class Signed(Protocol):
+    """A message with a sender."""
+
+    utime: int
+    client: str
+    session: int
+    seq: int
 
 
 class Identity:
@@ -42,3 +53,10 @@ class Identity:
         """Returns a number greater than all before."""
         self._seq += 1
         return self._seq
+
+    def sign(self, message: Signed) -> None:
+        """Writes the present time, and who says it, into a message."""
+        message.utime = time.time_ns() // 1000
+        message.client = self.client
+        message.session = self.session
+        message.seq = self.next_seq()

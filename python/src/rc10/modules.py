@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import math
-import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -93,7 +92,7 @@ class Module:
         self._subscriber = Subscriber(link, f"{robot}.v1.{name}.state", signals_t)
 
     def send(self, *, validity_ms: int = 0, priority: int | None = None, **inputs: float) -> None:
-        """Gives the module these inputs; what is not named is not given.
+        """Gives the module these inputs; all others have no value.
 
         They hold for `validity_ms` only, and until the robot is left. Call this again before that,
         from your own loop.
@@ -145,10 +144,7 @@ class Module:
 
     def _publish(self, inputs: Mapping[str, float], priority: int, validity_ms: int) -> None:
         message = signals_t()
-        message.utime = time.time_ns() // 1000
-        message.client = self._identity.client
-        message.session = self._identity.session
-        message.seq = self._identity.next_seq()
+        self._identity.sign(message)
         message.priority = priority
         message.validity_ms = validity_ms
         message.count = len(inputs)

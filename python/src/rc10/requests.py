@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -81,10 +80,7 @@ class Requests:
     def open(self, operation: str, target: str, values: Mapping[str, float]) -> Iterator[Request]:
         """Makes a request, without sending it, that waits for its answer in a `with` block."""
         message = request_t()
-        message.utime = time.time_ns() // 1000
-        message.client = self._identity.client
-        message.session = self._identity.session
-        message.seq = self._identity.next_seq()
+        self._identity.sign(message)
         message.operation = operation
         message.target = target
         message.value_count = len(values)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import math
 import re
-import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, Union, get_args
 
@@ -485,10 +484,7 @@ class RobotClient:
 
     def _publish_command(self, orders: Mapping[str, Setpoint], validity_ms: int) -> None:
         message = command_t()
-        message.utime = time.time_ns() // 1000
-        message.client = self._identity.client
-        message.session = self._identity.session
-        message.seq = self._identity.next_seq()
+        self._identity.sign(message)
         message.priority = self._priority
         message.validity_ms = validity_ms
         message.setpoint_count = len(orders)

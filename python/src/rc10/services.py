@@ -130,10 +130,7 @@ class ServiceClient(Generic[RequestT, ResponseT]):
         """
         payload: Any = request
         message = service_request_t()
-        message.utime = time.time_ns() // 1000
-        message.client = self._identity.client
-        message.session = self._identity.session
-        message.seq = self._identity.next_seq()
+        self._identity.sign(message)
         message.timeout_ms = round(timeout_s * 1000)
         message.request_type, message.response_type = self._types
         message.payload = payload.encode()

@@ -13,7 +13,7 @@ namespace rc10 {
 /// its watchdog works. The watchdog is proven once after each start of the drive: a motor at rest, which has
 /// said that it hears its commands, is told nothing until it says that it has timed out. A time-out from
 /// before proves nothing: any watchdog trips in a drive that nobody commands. Pure: frames and time come in,
-/// what to ask goes out. Scheduler thread only.
+/// questions go out. Scheduler thread only.
 class VescInquiry {
  public:
   /// `silent_for`: how long a drive is told nothing to see its watchdog.

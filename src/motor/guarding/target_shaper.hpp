@@ -45,9 +45,9 @@ struct ShapingConfig {
 
 /// Turns what a client asks for into what the motor may do in this tick: slew limits, and soft angle
 /// limits that still allow moving back. Soft limits act while the angle is referenced, and with
-/// MotorFeedback::bounds_only. After enabling the
-/// target in force goes from what is measured to what is asked: a client may have sent for long. What holds a
-/// load then is not let go: the target begins at the angle and with the effort that a fallback holds.
+/// MotorFeedback::bounds_only. After enabling the target in force goes from the measured to the asked value:
+/// a client may have sent for long. A load that is held then is not let go: the target begins at the angle
+/// and with the effort that a fallback holds.
 ///
 /// Soft limits, a ceiling and the limit of the effort take away an effort, and brake, at once; an effort that
 /// they took away comes back at its slew. Scheduler thread only.

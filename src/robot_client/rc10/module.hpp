@@ -54,9 +54,9 @@ class Module {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
   /// Gives the module these inputs, once: nothing sends them again, so that a program that hangs lets go.
-  /// Call it from a loop, more often than they lapse; they end with the Robot, too. They replace all inputs;
-  /// what is not named is not given. The result says why they were not sent; whether the module takes them
-  /// shows in state().owner.
+  /// Call it from a loop, more often than they lapse; they end with the Robot, too. They replace all inputs:
+  /// the others have no value. The result says why they were not sent; whether the module takes them shows in
+  /// state().owner.
   Result<void> send(const Signals& inputs, SendOptions options = {}) const;
 
   /// The newest outputs; before the first: none of them, and an age of ages.

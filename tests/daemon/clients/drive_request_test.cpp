@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "config/load_config.hpp"
 #include "daemon/clients/drive_request.hpp"
 #include "daemon/clients/request_desk.hpp"
 #include "daemon/described_robot.hpp"
 #include "daemon/link_messages.hpp"
+#include "daemon/robot_of_text.hpp"
 #include "daemon/virtual_robot.hpp"
 #include "drives/damiao/damiao_setup.hpp"
 #include "drives/myactuator/myactuator_setup.hpp"
@@ -138,15 +138,6 @@ TEST_F(DriveRequestTest, TheSettingsOfADriveAreTold) {
 /// A Damiao arm and a wheel, simulated.
 class ConfigureDriveTest : public ::testing::Test {
  protected:
-  static RobotConfig config() {
-    auto outcome = parseRobotConfig(
-        "robot: setup\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
-        "      - {name: arm, model: DM4310, id: 1, master_id: 17, on_estop: brake}\n"
-        "      - {name: wheel, model: M3508, id: 2}\n",
-        "setup.yaml");
-    EXPECT_TRUE(outcome.config) << outcome.errorText();
-    return outcome.config.value_or(twoWheelsAndYaw());
-  }
   void ask(std::size_t motor = 0, double timeout_ms = 100.0) {
     Order order;
     order.id = ++asked_;
@@ -171,7 +162,10 @@ class ConfigureDriveTest : public ::testing::Test {
     return answer();
   }
 
-  VirtualRobot robot{config()};
+  VirtualRobot robot{
+      robotOfText("robot: setup\nrealtime: preferred\nbuses:\n  - name: bench\n    type: sim\n    motors:\n"
+                  "      - {name: arm, model: DM4310, id: 1, master_id: 17, on_estop: brake}\n"
+                  "      - {name: wheel, model: M3508, id: 2}\n")};
 
  private:
   std::uint64_t asked_ = 1000;

@@ -176,34 +176,30 @@ AbsoluteEncoder encoderOf(std::string_view name) {
 TEST(LostAngleOfARobStride, StaysInDoubtThroughAHoldAndEndsWithTheDisableThatLetsGo) {
   auto config = robotOfArm(encoderOf("RobStride"), ", feedback_timeout_ms: 400, on_disable: hold", 0.0, "");
   VirtualRobot robot(config);
-  const auto enable = [&robot] {
+  const auto expectOnceEnabled = [&robot](bool zeroed) {
     for (int i = 0; i < 4 && robot.motor(kArm).status != MotorStatus::kActive; ++i) {
       (void)robot.order(Operation::kEnable);
       robot.run(500);
     }
     ASSERT_EQ(robot.motor(kArm).status, MotorStatus::kActive);
+    EXPECT_EQ(robot.motor(kArm).feedback.zeroed, zeroed);
+  };
+  const auto expectOnceDisabled = [&robot](int times, Acting acting) {
+    for (int i = 0; i < times; ++i) (void)robot.order(Operation::kDisable);
+    robot.run(50);
+    ASSERT_EQ(robot.motor(kArm).acting, acting);
   };
   robot.run(500);
-  enable();
+  expectOnceEnabled(true);
   robot.simBus().silence(0, true);
   robot.run(230);
   robot.simBus().silence(0, false);
   robot.run(50);
-  ASSERT_EQ(robot.motor(kArm).status, MotorStatus::kActive);
-  EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
-  (void)robot.order(Operation::kDisable);
-  robot.run(50);
-  ASSERT_EQ(robot.motor(kArm).acting, Acting::kHold);
-  enable();
-  robot.run(50);
-  EXPECT_FALSE(robot.motor(kArm).feedback.zeroed);
-  (void)robot.order(Operation::kDisable);
-  (void)robot.order(Operation::kDisable);
-  robot.run(50);
-  ASSERT_EQ(robot.motor(kArm).acting, Acting::kNothing);
-  enable();
-  robot.run(50);
-  EXPECT_TRUE(robot.motor(kArm).feedback.zeroed);
+  expectOnceEnabled(false);
+  expectOnceDisabled(1, Acting::kHold);
+  expectOnceEnabled(false);
+  expectOnceDisabled(2, Acting::kNothing);
+  expectOnceEnabled(true);
 }
 
 constexpr AbsoluteEncoder kManyWrapsAway[] = {

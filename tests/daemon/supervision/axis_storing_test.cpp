@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "config/load_config.hpp"
 #include "config/motor_families.hpp"
+#include "daemon/robot_of_text.hpp"
 #include "daemon/supervision/one_motor.hpp"
 #include "motor/drive_configuring.hpp"
 
@@ -103,16 +103,15 @@ TEST(StoringDrives, AreThoseOfEachFamilyWithSettings) {
   EXPECT_EQ(families, (std::set<std::string>{"Damiao", "MyActuator", "RobStride"}));
 }
 
+/// A bus with an arm, whose drive stores; more of its motors may follow.
+const std::string kLifter =
+    "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
+    "      - {name: arm, model: DM4310, id: 1, master_id: 17}\n";
+
 // While it stores its silence is no loss, so nothing of its group may rely on it.
 TEST(StoringDrives, OfAGroupAreConfiguredOnlyWhileTheOthersRestAndKeepThemFromBeingEnabled) {
-  const auto outcome = parseRobotConfig(
-      "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
-      "      - {name: arm, model: DM4310, id: 1, master_id: 17}\n"
-      "      - {name: wheel, model: M3508, id: 2, on_disable: hold}\n"
-      "groups: [{name: both, motors: [arm, wheel]}]\n",
-      "lifter.yaml");
-  ASSERT_TRUE(outcome.config) << outcome.errorText();
-  VirtualRobot robot(*outcome.config);
+  VirtualRobot robot(robotOfText(kLifter + "      - {name: wheel, model: M3508, id: 2, on_disable: hold}\n"
+                                           "groups: [{name: both, motors: [arm, wheel]}]\n"));
   robot.run(2000);
   const auto wheel = MotorSet{}.set(1);
   Order order;
@@ -143,15 +142,12 @@ TEST(StoringDrives, OfAGroupAreConfiguredOnlyWhileTheOthersRestAndKeepThemFromBe
 }
 
 TEST(StoringDrives, DelayTheReturnOfTheirGroupAndDoNotPreventIt) {
-  const auto outcome = parseRobotConfig(
-      "robot: lifter\nrealtime: preferred\nbuses:\n  - name: a\n    type: sim\n    motors:\n"
-      "      - {name: arm, model: DM4310, id: 1, master_id: 17}\n"
-      "      - {name: left, model: M3508, id: 2}\n"
-      "  - {name: b, type: sim, motors: [{name: right, model: M3508, id: 2}]}\n"
-      "groups: [{name: all, motors: [arm, left, right], on_return: rearm_at_rest}]\n",
-      "lifter.yaml");
-  ASSERT_TRUE(outcome.config) << outcome.errorText();
-  VirtualRobot robot(*outcome.config);
+  const auto config =
+      robotOfText(kLifter +
+                  "      - {name: left, model: M3508, id: 2}\n"
+                  "  - {name: b, type: sim, motors: [{name: right, model: M3508, id: 2}]}\n"
+                  "groups: [{name: all, motors: [arm, left, right], on_return: rearm_at_rest}]\n");
+  VirtualRobot robot(config);
   robot.run(2000);
   const auto wheels = MotorSet{0b110};
   ASSERT_EQ(robot.orderFor(wheels, Operation::kEnable).motors[1], Refusal::kNone);
@@ -164,7 +160,7 @@ TEST(StoringDrives, DelayTheReturnOfTheirGroupAndDoNotPreventIt) {
   order.id = 77;
   order.operation = Operation::kConfigure;
   order.motors.set(0);
-  order.drive = timeoutOf500Ms(*outcome.config->buses[0].motors[0].traits().setup);
+  order.drive = timeoutOf500Ms(*config.buses[0].motors[0].traits().setup);
   ASSERT_TRUE(robot.exchange().orders.push(order));
   for (int i = 0; i < 500 && !configuring.excusesSilence(); ++i) robot.tick();
   ASSERT_TRUE(configuring.excusesSilence());

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "config/load_config.hpp"
+#include "daemon/robot_of_text.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::supervisor_return_test {
@@ -12,19 +12,11 @@ namespace {
 /// Two wheels, on a bus each. Seconds for which one is pushed.
 class ReturnTest : public ::testing::TestWithParam<int> {
  protected:
-  ReturnTest() : robot(configured()) {}
-  static RobotConfig configured() {
-    const auto outcome = parseRobotConfig(
-        "robot: cart\nrealtime: preferred\nbuses:\n"
-        "  - {name: a, type: sim, motors: [{name: left, model: M3508, id: 1}]}\n"
-        "  - {name: b, type: sim, motors: [{name: right, model: M3508, id: 1}]}\n"
-        "groups: [{name: wheels, motors: [left, right], on_return: rearm_at_rest}]\n",
-        "cart.yaml");
-    EXPECT_TRUE(outcome.config) << outcome.errorText();
-    return outcome.config.value_or(twoWheelsAndYaw());
-  }
-
-  VirtualRobot robot;
+  VirtualRobot robot{
+      robotOfText("robot: cart\nrealtime: preferred\nbuses:\n"
+                  "  - {name: a, type: sim, motors: [{name: left, model: M3508, id: 1}]}\n"
+                  "  - {name: b, type: sim, motors: [{name: right, model: M3508, id: 1}]}\n"
+                  "groups: [{name: wheels, motors: [left, right], on_return: rearm_at_rest}]\n")};
 };
 
 TEST_P(ReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {

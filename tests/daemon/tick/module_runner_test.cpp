@@ -153,9 +153,7 @@ TEST_F(ModuleRunnerTest, AMessageThatIsTooOldIsRefused) {
 
 TEST_F(ModuleRunnerTest, AMessageThatIsTooOldEndsWhatItsClientSaidBefore) {
   const ScriptedType type;
-  start({{&type, 0}});
-  signal("planner", 0, 12.0, 1000ms);
-  robot_->tick();
+  startFor("planner", type);
   signal("keyboard", 0, 3.0, 0ms);
   robot_->tick();
   EXPECT_EQ(seen(), 12.0) << "another client's";
@@ -168,9 +166,7 @@ TEST_F(ModuleRunnerTest, AMessageThatIsTooOldEndsWhatItsClientSaidBefore) {
 // Message of the client library when its program leaves.
 TEST_F(ModuleRunnerTest, TheSameInputsForAMillisecondEndThoseBefore) {
   const ScriptedType type;
-  start({{&type, 0}});
-  signal("planner", 0, 12.0, 1000ms);
-  robot_->tick();
+  startFor("planner", type);
   signal("planner", 0, 12.0, 1ms);
   robot_->run(2);
   EXPECT_TRUE(std::isnan(seen()));

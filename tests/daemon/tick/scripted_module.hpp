@@ -80,6 +80,12 @@ class ModuleRunnerTest : public ::testing::Test {
     message.values[0] = value;
     ASSERT_TRUE(robot_->exchange().signals.push(message));
   }
+  /// One module, to which this client gives 12 for a second.
+  void startFor(const char* client, const ModuleType& type) {
+    start({{&type, 0}});
+    signal(client, 0, 12.0, Duration{std::chrono::seconds{1}});
+    robot_->tick();
+  }
   double senders() { return robot_->snapshot().modules[0].outputs[1]; }
   double seen(std::size_t module = 0) { return robot_->snapshot().modules[module].outputs[0]; }
 
