@@ -66,7 +66,7 @@ put_back() {
 }
 
 # It was ended in the middle, and could not say so.
-[ -s "$venv/.inputs" ] || [ ! -e "$venv/.before/.inputs" ] || put_back
+if [ -e "$venv/.before/.moved" ] || { [ -e "$venv/.before/.inputs" ] && [ ! -s "$venv/.inputs" ]; }; then put_back; fi
 client_hash=$(inputs "${client[@]}") all_hash=$(inputs "${client[@]}" "${all[@]}")
 made_from=$(cat "$venv/.inputs" 2>/dev/null || true)
 pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
@@ -80,7 +80,8 @@ install() {
 if [ "$made_from" != "$all_hash" ] && [ "$made_from" != "$client_hash" ]; then
     echo "venv: making $venv${made_from:+ anew: what it is made from has changed}" >&2
     if [ -n "$made_from" ]; then
-        mkdir -p "$venv/.before"
+        rm -rf "$venv/.before"
+        mkdir "$venv/.before"
         cp "$venv/.inputs" "$venv/.before/.inputs"
         : >"$venv/.inputs"
         trap put_back EXIT
@@ -103,5 +104,6 @@ if [ "$wanted" = all ] && [ "$made_from" != "$all_hash" ]; then
     echo "$all_hash" >"$venv/.inputs"
 fi
 trap - EXIT
+rm -f "$venv/.before/.moved" # first: from here on the new one is the one that works
 rm -rf "$venv/.before"
 echo "$venv/bin/python"

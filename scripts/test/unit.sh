@@ -1,5 +1,5 @@
 #!/bin/bash
-# the C++ unit tests in the dev build, programs built against an installed prefix, and the Python client's tests
+# the C++ unit tests in the dev build but those of the soak, programs built against an installed prefix, and the Python client's tests
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"

@@ -153,17 +153,17 @@ def test_one_that_works_stays_until_another_one_does(
     ]
 
 
-@pytest.mark.parametrize("moved", [True, False])
+@pytest.mark.parametrize(("moved", "successor"), [(False, ""), (True, ""), (True, "half\n")])
 def test_one_that_works_is_found_again_after_a_kill(
-    moved: bool, environment: Environment, tmp_path: Path
+    moved: bool, successor: str, environment: Environment, tmp_path: Path
 ) -> None:
-    """While it was moved away, or while its successor was made."""
+    """While it was moved away, while its successor was made, while more was added to that."""
     environment.make("client")
     venv = tmp_path / "venv"
     before = venv / ".before"
     before.mkdir()
     (venv / ".inputs").rename(before / ".inputs")
-    (venv / ".inputs").write_text("")
+    (venv / ".inputs").write_text(successor)
     (venv / "bin").rename(before / "bin")
     if moved:
         (venv / "pyvenv.cfg").rename(before / "pyvenv.cfg")

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from rc10.events import Event
     from rc10.gains import Gains
-    from rc10.inbox import Hearer
     from rc10.moves import Move
     from rc10.recording import Recording
     from rc10.requests import Response
@@ -213,11 +212,6 @@ class Robot(RobotClient):
         events = list(self._inbox.events)
         self._inbox.events.clear()
         return events
-
-    def hear_events(self, hearer: Hearer) -> list[Event]:
-        """Has `hearer` hear each event from now on; returns those that events() would return."""
-        self._inbox.hearers.add(hearer)
-        return list(self._inbox.events)
 
     # ---- commanding --------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 from rc10.lcm_types.event_t import event_t
 from rc10.printable import printable
@@ -15,6 +16,13 @@ class Severity(Word):
     INFO = event_t.SEVERITY_INFO
     WARNING = event_t.SEVERITY_WARNING
     ERROR = event_t.SEVERITY_ERROR
+
+
+class EventListener(Protocol):
+    """Is told of events, while the program receives."""
+
+    def on_event(self, event: Event) -> None:
+        """Called with each, oldest first."""
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Protocol
-from weakref import WeakSet
+from typing import TYPE_CHECKING
 
 from rc10.diagnostics import Diagnostics
 from rc10.events import Event
@@ -32,13 +31,6 @@ _DIAGNOSTICS_QUEUE = 10
 _OVERTAKEN_US = 1_000_000
 
 
-class Hearer(Protocol):
-    """Hears events."""
-
-    def hear(self, event: Event) -> None:
-        """While the program receives."""
-
-
 class Inbox:
     """Receives states, diagnostics and events; nothing happens outside pump().
 
@@ -59,8 +51,6 @@ class Inbox:
         self._decoder = decoder
         self._host_clock = HostClock()
         self.on_state: list[Callable[[RobotState], None]] = []
-        # Those who also hear each event, as long as they live.
-        self.hearers: WeakSet[Hearer] = WeakSet()
         self._waiting: list[bytes] = []
         self._states_seen = 0
         self._last = True
@@ -138,7 +128,5 @@ class Inbox:
         event = self._decoder.decode(self._channel + "event", event_t.decode, Event.from_lcm, data)
         if event is not None:
             self.events.append(event)
-            for hearer in tuple(self.hearers):
-                hearer.hear(event)
             if self.on_event is not None:
                 self.on_event(event)

@@ -113,8 +113,9 @@ class Module:
             if not math.isfinite(value):
                 raise ValueError(f"{name} = {value} is not finite: leave it out, or give a number")
         publish = partial(self._publish, inputs, self._priority if priority is None else priority)
-        end = partial(self._end, partial(publish, ENDED_MS), self._now())
-        self._in_force.gave(self.name, end, lapses_at(self._now(), validity_ms))
+        self._in_force.gave(
+            self.name, partial(publish, ENDED_MS), lapses_at(self._now(), validity_ms)
+        )
         publish(validity_ms)
         self._tell_if_missing()
 
@@ -134,13 +135,6 @@ class Module:
         message = latest.message
         outputs = dict(zip(message.names, message.values))
         return ModuleState(outputs, message.client, latest.received_s, self._now)
-
-    def _end(self, publish: Callable[[], None], given_s: float) -> None:
-        """Unless another client has displaced them: said again, they would take the module anew."""
-        latest = self._subscriber.latest
-        since = latest is not None and latest.received_s > given_s
-        if latest is None or not since or latest.message.client == self._identity.client:
-            publish()
 
     def _publish(self, inputs: Mapping[str, float], priority: int, validity_ms: int) -> None:
         message = signals_t()

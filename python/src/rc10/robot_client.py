@@ -7,6 +7,7 @@ import math
 import re
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, Union, get_args
+from weakref import WeakSet
 
 from rc10.catch_up import PAUSE_S, CatchUp
 from rc10.decoder import Decoder
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from typing import Callable
 
     from rc10.diagnostics import Diagnostics
-    from rc10.events import Event
+    from rc10.events import Event, EventListener
     from rc10.joints import Joints
     from rc10.modules import ModuleParts
     from rc10.state import MotorState, RobotState
@@ -143,6 +144,7 @@ class RobotClient:
         # Robots that were heard while the first state was waited for.
         self._heard: set[str] = set()
         self._in_force = InForce()
+        self._event_listeners: WeakSet[EventListener] = WeakSet()
 
     # ---- what is known -----------------------------------------------------------------------
 
@@ -150,6 +152,11 @@ class RobotClient:
     def name(self) -> str:
         """The name of the robot."""
         return self._name
+
+    def listen_to_events(self, listener: EventListener) -> list[Event]:
+        """Tells `listener` of each event while it lives; returns those not taken yet."""
+        self._event_listeners.add(listener)
+        return list(self._inbox.events)
 
     @property
     def link(self) -> Link:
@@ -442,8 +449,8 @@ class RobotClient:
                 self._told.add(event.text)
                 _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
         self._in_force.on_event(event)
-        for move in self._moves.values():
-            move.on_event(event)
+        for listener in (*self._moves.values(), *self._event_listeners):
+            listener.on_event(event)
 
     def _abandon(self, move: Move) -> None:
         """Has the target of a move end now: nobody waits for it any more."""

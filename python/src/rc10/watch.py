@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 # Turns in a row that a busy computer may hold up.
 _SLOW_TURNS = 5
+_SLOW = (
+    "the turns of this loop take too long: a busy computer, "
+    "or a loop whose Watch needs a longer pause_s"
+)
 
 
 class Watch:
@@ -56,10 +60,10 @@ class Watch:
         self._sent_s = 0.0
         self._obeyed = False
         self._over = ""
-        self._heard.extend(robot.hear_events(self))
+        self._heard.extend(robot.listen_to_events(self))
         self._judge_events()
 
-    def hear(self, event: Event) -> None:
+    def on_event(self, event: Event) -> None:
         """Called with each event, while the program receives."""
         self._heard.append(event)
 
@@ -69,17 +73,15 @@ class Watch:
         Raises:
             MotorStopped: the motor does not obey any more, another client has it, or it was enabled
                 anew while this program stood still; from now on for good.
-            Timeout: no state has come for a second.
-            ValueError: each turn of the loop takes longer than `pause_s`.
+            Timeout: no state has come for a second, or each turn of the loop takes longer than
+                `pause_s`.
         """
         now_s = self._robot.link.now()
         state = self._robot.state
         caught_up = self._catch_up.done(now_s, state)
         self._slow_turns = self._slow_turns + 1 if self._catch_up.resumed_s == now_s else 0
         if self._slow_turns > _SLOW_TURNS:
-            raise ValueError(
-                "the turns of this loop are longer than pause_s: give Watch a longer one"
-            )
+            raise Timeout(_SLOW)
         self._judge_events()
         motor = state.motor(self._motor)
         self._over = (

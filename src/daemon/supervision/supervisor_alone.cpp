@@ -20,7 +20,7 @@ Refusal Supervisor::enableAlone(std::size_t motor, const Tick& tick) noexcept {
   if (!isOn(axes_[motor].status())) alone_.reset();
   if (refusal != Refusal::kNone) return refusal;
   for (auto& group : groups_) group.rearm.reset();  // or it would come back when this one ends
-  return refusal;
+  return Refusal::kNone;
 }
 
 }  // namespace rc10

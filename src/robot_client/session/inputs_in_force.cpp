@@ -23,20 +23,7 @@ using std::chrono::milliseconds;
 void InputsInForce::give(const std::string& module, const Signals& inputs, const SendOptions& options,
                          MonotonicTime now) {
   const Duration validity = options.validity == milliseconds{0} ? kDefaultValidity : options.validity;
-  by_module_[module] = {{inputs, options}, now, now + validity};
-}
-
-std::vector<std::string> InputsInForce::modules() const {
-  std::vector<std::string> names;
-  names.reserve(by_module_.size());
-  for (const auto& [module, timed] : by_module_) names.push_back(module);
-  return names;
-}
-
-void InputsInForce::onState(const std::string& module, const ModuleState& state, std::string_view client) {
-  const auto found = by_module_.find(module);
-  if (found == by_module_.end() || !(state.received > found->second.given_at)) return;
-  if (state && state.owner != client) by_module_.erase(found);
+  by_module_[module] = {{inputs, options}, now + validity};
 }
 
 void InputsInForce::onEvent(const Event& event) {

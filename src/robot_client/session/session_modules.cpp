@@ -33,8 +33,6 @@ Result<void> SessionModules::send(const std::string& module, const Signals& inpu
 }
 
 void SessionModules::letGo(MonotonicTime now) {
-  for (const auto& module : in_force_.modules())
-    in_force_.onState(module, state(module), core_.options.client);
   for (const auto& [module, given] : in_force_.takeAll(now))
     (void)core_.outgoing.inputs(module, given.inputs, given.options);
 }

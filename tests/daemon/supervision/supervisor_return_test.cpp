@@ -23,6 +23,8 @@ TEST_P(ReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {
   robot.run(100);
   ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
   robot.run(50);
+  const auto enabled_by = robot.motor(0).enabled_by;
+  EXPECT_NE(enabled_by, 0U);
   robot.freezeBus(1, true);
   robot.run(100);
   robot.freezeBus(1, false);
@@ -39,6 +41,10 @@ TEST_P(ReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {
   robot.run(4000);
   const auto expected = GetParam() < 10 ? MotorStatus::kActive : MotorStatus::kReady;
   for (std::size_t motor = 0; motor < 2; ++motor) EXPECT_EQ(robot.motor(motor).status, expected);
+  EXPECT_EQ(robot.motor(0).enabled_by, enabled_by) << "a return is no order";
+  robot.order(Operation::kEnable);
+  EXPECT_EQ(robot.motor(0).enabled_by != enabled_by, expected == MotorStatus::kReady)
+      << "an order that switches it on";
 }
 
 INSTANTIATE_TEST_SUITE_P(Pushed, ReturnTest, ::testing::Values(2, 11, 30),

@@ -41,20 +41,6 @@ TEST(InputsInForce, OnesThatHaveLapsedAreNotSaidAgain) {
   EXPECT_THAT(after(0ms, 50ms), IsEmpty());
 }
 
-TEST(InputsInForce, OnesThatAnotherClientHasDisplacedAreNotSaidAgain) {
-  const auto after = [](const std::string& owner, Duration received_after) {
-    InputsInForce in_force;
-    in_force.give("base", {{"vx_m_s", 1.0}}, {.validity = 1000ms}, kStart);
-    in_force.onState("base", {{{"speed_m_s", 1.0}}, owner, kStart + received_after}, "planner");
-    in_force.onState("gimbal", {{{"yaw_deg", 1.0}}, "other", kStart + 5ms}, "planner");
-    return in_force.takeAll(kStart + 10ms);
-  };
-  EXPECT_THAT(after("other", 5ms), IsEmpty());
-  EXPECT_THAT(after("", 5ms), IsEmpty()) << "and has ended";
-  EXPECT_THAT(after("planner", 5ms), SizeIs(1));
-  EXPECT_THAT(after("other", -5ms), SizeIs(1)) << "it had it before";
-}
-
 TEST(InputsInForce, OnesFromBeforeAMotorWasEnabledAreNotSaidAgain) {
   const auto after = [](std::int32_t code, const std::string& text) {
     InputsInForce in_force;
