@@ -78,6 +78,21 @@ tell() {
         || echo "install-deps: NOTE among them is a PREEMPT_RT kernel, which GRUB may start from then on" >&2
 }
 
+# Packages of another release than Debian 12 have other names and interfaces; without lists of packages nobody can tell.
+# --old-lists: they may lack a package that is there.
+refuse_other_releases() {
+    local candidates lacking gpiod
+    [[ $(LC_ALL=C apt-cache policy 2>/dev/null) == *" Packages"* ]] || return 0
+    # "NAME VERSION" of each that apt could install.
+    candidates=$(LC_ALL=C apt-cache policy "${absent[@]}" 2>/dev/null | awk '/^[^ ].*:$/ {name = substr($1, 1, length($1) - 1)}
+        $1 == "Candidate:" && $2 != "(none)" {print name, $2}') || true
+    lacking=$(cut -d ' ' -f 1 <<<"$candidates" | grep -vxFf - <(printf '%s\n' "${absent[@]}") | paste -sd ' ') || true
+    [ -z "$lacking" ] || [ "${1:-}" = --old-lists ] || die "apt here has no $lacking: those are packages of Debian 12 (if this is one: sudo apt-get update)"
+    gpiod=$(sed -n 's/^libgpiod-dev //p' <<<"$candidates")
+    [[ ! $gpiod =~ ^([0-9]+:)?([2-9]|[1-9][0-9]+)\. ]] \
+        || die "libgpiod-dev here is $gpiod, which has another interface than 1.6: rc10d needs that of Debian 12"
+}
+
 list='' list_missing='' may_ask=''
 [ "${1:-}" != --list ] || { list=yes && shift; }
 [ "${1:-}" != --missing ] || { list_missing=yes && shift; }
@@ -96,13 +111,15 @@ for group in "$@"; do
 done
 
 [ -z "$list" ] || { printf '%s\n' "${wanted[@]}" && exit; }
-command -v dpkg-query >/dev/null || die "this is no Debian or Ubuntu; what is needed there: ${wanted[*]}"
+command -v dpkg-query >/dev/null || die "this is no Debian; what is needed, as Debian 12 calls it: ${wanted[*]}"
 mapfile -t absent < <(missing "${wanted[@]}" | sort -u)
 [ ${#absent[@]} -gt 0 ] || exit 0
 [ -z "$list_missing" ] || { printf '%s\n' "${absent[@]}" && exit; }
 # Modules that are built with the headers must fit the kernel: both of one version.
 [[ " ${absent[*]} " != *" linux-headers-rt-$machine "* ]] || absent+=("linux-image-rt-$machine")
 
+# Root is asked for no password, and has the lists updated below.
+if [ "$(id -u)" -eq 0 ]; then refuse_other_releases --old-lists; else refuse_other_releases; fi
 if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
     die "missing packages, and neither root nor sudo to install them: apt-get install ${absent[*]}"
 fi
@@ -114,5 +131,5 @@ fi
 tell installing
 install=(install --no-install-recommends --yes "${absent[@]}")
 # The package lists may be missing or name versions that the archive no longer has.
-apt "${install[@]}" >&2 || { update_lists && apt "${install[@]}" >&2; } \
+apt "${install[@]}" >&2 || { update_lists && refuse_other_releases && apt "${install[@]}" >&2; } \
     || die "apt-get could not install ${absent[*]}"

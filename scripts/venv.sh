@@ -10,6 +10,8 @@ unset PYTHONPATH PYTHONHOME
 export PIP_USER=0
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+# shellcheck source=scripts/lib/owner.sh
+. "$repo/scripts/lib/owner.sh"
 venv=${RC10_VENV:-$repo/.venv}
 client=("$repo/python/requirements.txt")
 all=("$repo/python/requirements-dev.txt" "$repo/scripts/requirements.txt")
@@ -69,6 +71,9 @@ put_back() {
 if [ -e "$venv/.before/.moved" ] || { [ -e "$venv/.before/.inputs" ] && [ ! -s "$venv/.inputs" ]; }; then put_back; fi
 client_hash=$(inputs "${client[@]}") all_hash=$(inputs "${client[@]}" "${all[@]}")
 made_from=$(cat "$venv/.inputs" 2>/dev/null || true)
+if [ "$made_from" != "$all_hash" ] && { [ "$wanted" = all ] || [ "$made_from" != "$client_hash" ]; }; then
+    must_be_ours "$venv" "$repo/python/src/rc10/lcm_types"
+fi
 pip=("$venv/bin/python" -m pip --quiet --disable-pip-version-check install)
 
 # install REQUIREMENTS...: with the hashes of python-hashes.txt, and nothing else.

@@ -6,6 +6,10 @@ set -euo pipefail
 unset CDPATH # a `cd` that finds a folder by it prints that
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/lib/owner.sh
+. "$repo/scripts/lib/owner.sh"
+# shellcheck source=scripts/lib/cache.sh
+. "$repo/scripts/lib/cache.sh"
 page=$repo/build/web
 
 case ${1:-} in
@@ -32,10 +36,14 @@ npm() {
 }
 
 mkdir -p "$repo/build"
+must_be_ours "$repo/build" -maxdepth 0
+must_be_ours "$repo/build/.web.lock"
 exec 9>"$repo/build/.web.lock"
 flock 9
+[ -n "${npm_config_cache:-}" ] || can_write "${HOME:-/dev/null}/.npm" || export npm_config_cache=$repo/build/cache/npm
 current=$(inputs)
 if [ "$(cat "$page/.inputs" 2>/dev/null || true)" != "$current" ] || { [ "$what" = check ] && [ ! -e "$repo/web/node_modules/.package-lock.json" ]; }; then
+    must_be_ours "$page" "$repo/build/web-tools" "$repo/web/node_modules"
     # With its own patience of 15 minutes a registry that is silent would hold up the demo.
     (cd "$repo/web" && npm ci --fetch-timeout=60000 --fetch-retries=1 --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
     # The compiler itself: its package starts it by way of Node, which is not needed for it.

@@ -7,6 +7,8 @@ unset PYTHONPATH PYTHONHOME
 export PIP_USER=0
 # Without symbolic links, as CMake and Python name files.
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
+# shellcheck source=scripts/lib/owner.sh
+. "$repo/scripts/lib/owner.sh"
 
 # ccache: hits across clones in different folders.
 export CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1
@@ -37,10 +39,8 @@ build() {
     echo "-- building $preset${*:+: $*}"
     # As a condition, as most callers need it, it would go on after a line that fails.
     mkdir -p "$repo/build" || return
-    if [ ! -w "$repo/build" ]; then
-        echo "build/ belongs to another user: sudo rm -r build .venv" >&2
-        return 1
-    fi
+    must_be_ours "$repo/build" -maxdepth 0 || return
+    must_be_ours "$repo/build/.$preset.lock" "$repo/build/$preset" || return
     (
         cd "$repo" || return
         # Two builds in one tree would disturb each other.

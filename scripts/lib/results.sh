@@ -3,6 +3,8 @@
 
 # shellcheck source=scripts/lib/project.sh
 . "$(dirname "${BASH_SOURCE[0]}")/project.sh"
+# shellcheck source=scripts/lib/cache.sh
+. "$(dirname "${BASH_SOURCE[0]}")/cache.sh"
 
 # Every file that does not compile, not only the first (ninja(1), -k).
 build_options=(-- -k 0)

@@ -40,8 +40,6 @@ TESTS_OF_DEV = {"unit", "kernel", "host", "faults", "vm", "soak", "web", "benchm
 # Cores that a part keeps busy; 0: it waits most of its time. All others use every core.
 # `web` waits for a browser most of its time; `pages` is short, and needs no build.
 CORES = {"host": 0, "web": 0, "pages": 0, "lint": 1, "vm": 1, "package": 1}
-# Compiles what no other part needs: in whatever time the others leave, at the lowest priority.
-FILLS = {"clang"}
 JOBS = os.environ.get("RC10_JOBS", "")
 ALL_CORES = min(
     len(os.sched_getaffinity(0)), int(JOBS) if re.fullmatch("[1-9][0-9]*", JOBS) else 1024
@@ -76,15 +74,6 @@ class Part:
         return min(CORES.get(self.name, ALL_CORES), ALL_CORES)
 
     @property
-    def cores_taken(self) -> int:
-        """Cores that it leaves to no other part."""
-        return 0 if self.name in FILLS else self.cores
-
-    @property
-    def waits(self) -> bool:
-        return self.cores == 0
-
-    @property
     def log(self) -> Path:
         return LOGS / f"{self.name}.log"
 
@@ -102,10 +91,10 @@ class Part:
             "RC10_PARTS": " ".join(wanted),
         }
         # Priority over parts that compute: a part that waits is woken in time.
-        niceness = 19 if self.name in FILLS else 0 if self.waits else 5
+        politely = ["nice", "-n", "5"] if self.cores else []
         with self.log.open("wb") as log:
             self.process = subprocess.Popen(
-                ["nice", "-n", str(niceness), SCRIPTS / f"{self.name}.sh"],
+                [*politely, SCRIPTS / f"{self.name}.sh"],
                 cwd=REPO,
                 env=environment,
                 stdin=subprocess.DEVNULL,
@@ -205,9 +194,9 @@ class Run:
         if part.name in TESTS_OF_DEV and any(other.name == "build" for other in unfinished):
             return False
         # Two parts that wait, at their priority, would take a core from all others.
-        if part.waits and any(other.waits for other in self.running):
+        if part.cores == 0 and any(other.cores == 0 for other in self.running):
             return False
-        return sum(other.cores_taken for other in self.running) + part.cores_taken <= ALL_CORES
+        return sum(other.cores for other in self.running) + part.cores <= ALL_CORES
 
     def start_what_may(self) -> None:
         for part in list(self.waiting):

@@ -44,6 +44,30 @@ def test_a_clone_that_cannot_be_written_fails_at_once(repo: Path) -> None:
     assert not (repo / "calls").exists()
 
 
+@pytest.mark.parametrize(
+    "foreign", ["build", "build/.dev.lock", "build/dev", "build/dev/src/motor.o"]
+)
+def test_what_a_run_with_sudo_has_left_is_named_with_the_remedy(
+    foreign: str, repo: Path, stranger: list[str]
+) -> None:
+    calls_of_a_build(repo)
+    (repo / "calls").unlink()
+    (repo / "build" / "dev" / "src").mkdir()
+    (repo / "build" / "dev" / "src" / "motor.o").touch()
+    (repo / foreign).chmod(0o555)
+    done = subprocess.run(
+        [*stranger, "bash", "-c", f". '{repo}/scripts/lib/project.sh'; build dev"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PATH": f"{repo}/bin:{os.environ['PATH']}", "CALLS": f"{repo}/calls"},
+    )
+    remedy = 'sudo chown -R "$USER" . (in the clone)'
+    assert done.stderr == f"{foreign} belongs to another user: {remedy}\n"
+    assert done.returncode != 0
+    assert not (repo / "calls").exists()
+
+
 def calls_of_a_build(repo: Path) -> list[str]:
     calls = repo / "calls"
     calls.write_text("")

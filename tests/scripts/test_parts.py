@@ -75,7 +75,7 @@ def test_parts_of_a_merge_wait_for_the_dev_build_if_they_use_it() -> None:
 
 
 def test_the_cores_are_those_of_parts() -> None:
-    assert run_parts.CORES.keys() | run_parts.FILLS <= set(NAMES)
+    assert run_parts.CORES.keys() <= set(NAMES)
 
 
 def test_each_part_of_a_merge_has_a_budget() -> None:
@@ -135,91 +135,6 @@ def test_a_run_of_several_words_has_no_name(
         [tmp_path / "scripts" / "test.sh", *words], capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines()[-1] == f"--name|{name}"
-
-
-def test_a_bare_machine_reads_what_comes_and_how_long_before_the_packages(tmp_path: Path) -> None:
-    """Python, which says it otherwise, is among the packages."""
-    for program, text in (("dpkg-query", "exit 0"), ("apt-get", "exit 1"), ("sudo", "exit 1")):
-        (tmp_path / program).write_text(f"#!/bin/sh\n{text}\n")
-        (tmp_path / program).chmod(0o755)
-    bare = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    run = subprocess.run(
-        [REPO / "scripts" / "test.sh"], env=bare, capture_output=True, text=True, check=False
-    )
-    cold_s = json.loads((PARTS / "budget.json").read_text())["sets"]["default"]["cold_s"]
-    said = (
-        f"rc10d's tests: unit kernel host pages. About {cold_s // 60}:{cold_s % 60:02} on 2 cores"
-    )
-    assert run.stdout.startswith(said)
-    assert run.returncode != 0
-
-
-@pytest.mark.parametrize(("part", "told"), [("vm", True), ("pages", False)])
-def test_a_kernel_among_the_packages_is_told_before_they_are_installed(
-    part: str, told: bool, tmp_path: Path
-) -> None:
-    for program, text in (("dpkg-query", "exit 0"), ("apt-get", "exit 1"), ("sudo", "exit 1")):
-        (tmp_path / program).write_text(f"#!/bin/sh\n{text}\n")
-        (tmp_path / program).chmod(0o755)
-    bare = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    run = subprocess.run(
-        [REPO / "scripts" / "test.sh", part], env=bare, capture_output=True, text=True, check=False
-    )
-    assert ("PREEMPT_RT kernel, which GRUB may start" in run.stderr) == told
-
-
-def test_packages_are_named_before_sudo_asks_for_the_password(tmp_path: Path) -> None:
-    for program, text in (
-        ("dpkg-query", "exit 0"),
-        ("id", "echo 1000"),
-        ("sudo", "echo ASKED >&2"),
-    ):
-        (tmp_path / program).write_text(f"#!/bin/sh\n{text}\n")
-        (tmp_path / program).chmod(0o755)
-    terminal, ours = os.openpty()
-    run = subprocess.run(
-        [REPO / "scripts" / "install-deps.sh", "--may-ask", "web"],
-        env=os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"},
-        stdin=ours,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    os.close(terminal)
-    os.close(ours)
-    assert run.stderr.splitlines() == [
-        "install-deps: this needs 2 Debian packages: chromium fonts-noto-cjk",
-        "ASKED",
-    ]
-
-
-APT = """#!/bin/bash
-echo "$*" | grep -o 'install \\|update' >>"$CALLS"
-[ "$(grep -c update "$CALLS")" -lt 3 ] || exit 0
-echo "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 1"
-exit 100
-"""
-
-
-def test_package_lists_that_another_apt_reads_are_waited_for(tmp_path: Path) -> None:
-    """A machine that was just started updates them by itself."""
-    for program, text in (
-        ("dpkg-query", "#!/bin/sh\n"),
-        ("id", "#!/bin/sh\necho 0\n"),
-        ("sleep", "#!/bin/sh\n"),
-        ("apt-get", APT),
-    ):
-        (tmp_path / program).write_text(text)
-        (tmp_path / program).chmod(0o755)
-    calls = tmp_path / "calls"
-    calls.touch()
-    path = f"{tmp_path}:{os.environ['PATH']}"
-    subprocess.run(
-        [REPO / "scripts" / "install-deps.sh", "web"],
-        env=os.environ | {"PATH": path, "CALLS": str(calls)},
-        check=True,
-    )
-    assert calls.read_text().split() == ["install", "update", "update", "update", "install"]
 
 
 @pytest.mark.parametrize("name", ["default", "ci", "all"])
