@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import math
 import re
 from contextlib import contextmanager
@@ -27,8 +26,8 @@ from rc10.lcm_types.setpoint_t import setpoint_t
 from rc10.link import MULTICAST_GROUP, ROUTE_COMMAND, Link
 from rc10.moves import Move
 from rc10.orders import hindered, obstacle
-from rc10.printable import printable
 from rc10.recorder import Recorder
+from rc10.refusals import Refusals
 from rc10.requests import Requests
 from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
 from rc10.spelling import did_you_mean, meant
@@ -44,8 +43,6 @@ if TYPE_CHECKING:
     from rc10.joints import Joints
     from rc10.modules import ModuleParts
     from rc10.state import MotorState, RobotState
-
-_log = logging.getLogger("rc10")
 
 Names = Union[str, "Iterable[str]"]
 AtEnd = Literal["timeout", "disable", "coast"]
@@ -71,18 +68,6 @@ _LIVE_S = 1.0
 
 # Among names of motors; no motor's name is empty.
 _ALL = ""
-
-# Events of targets and inputs that another client's stand in the way of, and of messages that rc10d
-# refused: docs/lcm.md.
-_REFUSED = (104, 202)
-_UNSUPPORTED = re.compile(
-    r"refused: (?P<motor>[^ :]+): (?P<mode>\w+): the motor's drive does not support the mode"
-)
-
-_GAINS_BEYOND = re.compile(
-    r"refused: (?P<motor>[^ :]+): impedance: .*: "
-    r"0 to (?P<stiffness>\S+) Nm/rad, 0 to (?P<damping>\S+) Nms/rad"
-)
 
 # LCM allows 63 characters for a channel, and ".v1.diagnostics" takes 15 of them.
 _MAX_NAME = 48
@@ -134,13 +119,8 @@ class RobotClient:
         self._enabled: set[str] = set()
         # When the enabling of a motor was answered last: states from before say nothing about it.
         self._answered: dict[str, float] = {}
-        # Motors that were ACTIVE, rc10d's words about modes that their drives do not have and about
-        # gains beyond their drives' (the largest stiffness and damping, and the words), and all of
-        # its words that were logged.
         self._was_active: set[str] = set()
-        self._unsupported: dict[tuple[str, str], str] = {}
-        self._most_gains: dict[str, tuple[float, float, str]] = {}
-        self._told: set[str] = set()
+        self._refusals = Refusals(client)
         # Robots that were heard while the first state was waited for.
         self._heard: set[str] = set()
         self._in_force = InForce()
@@ -439,15 +419,7 @@ class RobotClient:
     # ---- within ------------------------------------------------------------------------------
 
     def _on_event(self, event: Event) -> None:
-        if event.client == self.client and event.code in _REFUSED:
-            if found := _UNSUPPORTED.search(event.text):
-                self._unsupported[found["motor"], found["mode"]] = event.text
-            elif found := _GAINS_BEYOND.search(event.text):
-                most = float(found["stiffness"]), float(found["damping"])
-                self._most_gains[found["motor"]] = (*most, event.text)
-            if event.text not in self._told:
-                self._told.add(event.text)
-                _log.warning("rc10d says: %s", printable(f"{event.source}: {event.text}"))
+        self._refusals.on_event(event)
         self._in_force.on_event(event)
         for listener in (*self._moves.values(), *self._event_listeners):
             listener.on_event(event)
@@ -535,15 +507,8 @@ class RobotClient:
     def _check_obeyed(self, orders: Mapping[str, Setpoint]) -> None:
         """Refuses what would do nothing, and would say so nowhere near the caller's line."""
         for name, setpoint in orders.items():
-            if said := self._unsupported.get((name, setpoint.mode.name.lower())):
+            if said := self._refusals.of(name, setpoint):
                 raise CommandRefused(said)
-            if setpoint.mode is Mode.IMPEDANCE and name in self._most_gains:
-                most_stiffness, most_damping, said = self._most_gains[name]
-                if (
-                    setpoint.stiffness_nm_per_rad > most_stiffness
-                    or setpoint.damping_nms_per_rad > most_damping
-                ):
-                    raise CommandRefused(said)
         new = [
             name
             for name, setpoint in orders.items()
