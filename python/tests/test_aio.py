@@ -24,6 +24,8 @@ PATIENCE_S = 30.0
 class ObedientDaemon(FakeDaemon):
     """Its wheel is where it is told to be."""
 
+    follows = True
+
     def state(self) -> robot_state_t:
         message = super().state()
         wheel = message.motors[0]
@@ -31,7 +33,7 @@ class ObedientDaemon(FakeDaemon):
         if self.commands:
             wheel.owner = self.commands[-1].client
             wheel.mode, wheel.target = setpoints(self.commands[-1]).get("wheel", (0, 0.0))
-            wheel.total_angle_deg = wheel.target
+            wheel.total_angle_deg = wheel.target if self.follows else 0.0
         return message
 
 
@@ -244,6 +246,36 @@ async def test_a_move_that_is_cancelled_is_not_sent_any_more(
     for _ in range(3):
         await robot.wait_for_state()
     assert daemon.commands[-1].validity_ms == 1, "its target ends now"
+
+
+@pytest.mark.parametrize("stop", ["disable", "disable all", "request", "estop"])
+def test_a_stop_in_vain_ends_a_move_all_the_same(stop: str) -> None:
+    stops: dict[str, Callable[[aio.Robot], Awaitable[object]]] = {
+        "disable": lambda robot: robot.disable("wheel", timeout_s=PATIENCE_S),
+        "disable all": lambda robot: robot.disable(timeout_s=PATIENCE_S),
+        "request": lambda robot: robot.request("disable", "wheel", timeout_s=PATIENCE_S),
+        "estop": lambda robot: robot.estop(PATIENCE_S),
+    }
+
+    @in_loop
+    async def run(robot: aio.Robot, daemon: ObedientDaemon) -> None:
+        refused = (response_t.STATUS_REFUSED, "too many requests at once")
+        daemon.verdicts.update(dict.fromkeys(("disable", "estop"), refused))
+        await robot.wait_for_state()
+        await robot.enable("wheel", timeout_s=PATIENCE_S)
+        daemon.follows = False
+        move = asyncio.create_task(robot.move_to("wheel", 720, timeout_s=PATIENCE_S))
+        while not daemon.commands:
+            await robot.wait_for_state()
+        with pytest.raises(rc10.RequestRefused):
+            await stops[stop](robot)
+        assert (await move).reason == "the program has let go of wheel"
+        sent = len(daemon.commands)
+        for _ in range(100):
+            await robot.wait_for_state()
+        assert len(daemon.commands) == sent
+
+    run()
 
 
 @in_loop

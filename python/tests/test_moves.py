@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from typing import Callable
+
 import pytest
 
 import rc10
@@ -281,3 +283,58 @@ def test_a_motor_that_was_enabled_anew_while_the_program_stood_is_not_moved(
     assert move.result().outcome is MoveOutcome.FAILED
     robot.spin(0.5)
     assert len(daemon.commands) == sent
+
+
+STOPS: dict[str, Callable[[rc10.Robot], object]] = {
+    "disable it": lambda robot: robot.disable("wheel"),
+    "disable several": lambda robot: robot.disable(["yaw", "wheel"]),
+    "disable all": lambda robot: robot.disable(),
+    "disable also one that is not there": lambda robot: robot.disable(["wheel", "whel"]),
+    "a request of its own": lambda robot: robot.request("disable", "wheel"),
+    "estop": lambda robot: robot.estop(),
+}
+IN_VAIN: dict[str, Callable[[MovingDaemon], object]] = {
+    "refused": lambda daemon: daemon.verdicts.update(
+        dict.fromkeys(("disable", "estop"), (response_t.STATUS_REFUSED, "too many at once"))
+    ),
+    "failed": lambda daemon: daemon.verdicts.update(
+        dict.fromkeys(("disable", "estop"), (response_t.STATUS_FAILED, "its drive is silent"))
+    ),
+    "not heard": lambda daemon: setattr(daemon, "deaf_to_requests", 1000),
+}
+
+
+@pytest.mark.parametrize("stop", STOPS)
+@pytest.mark.parametrize("in_vain", IN_VAIN)
+@pytest.mark.parametrize("arrived", [False, True])
+def test_a_stop_in_vain_ends_it_all_the_same(
+    robot: rc10.Robot, daemon: MovingDaemon, stop: str, in_vain: str, arrived: bool
+) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 720 if arrived else 300
+    move = robot.move_to("wheel", 720)
+    if arrived:
+        assert move.result()
+    robot.spin(0.1)
+    IN_VAIN[in_vain](daemon)
+    sent = len(daemon.commands)
+    with pytest.raises(rc10.Rc10Error):
+        STOPS[stop](robot)
+    robot.spin(0.3)
+    assert len(daemon.commands) <= sent + 1, "but for the one on its way"
+    expect_silence(robot, daemon)
+    assert move.done()
+    if not arrived:
+        assert move.result().reason == "the program has let go of wheel"
+
+
+def test_disabling_another_motor_does_not_end_it(robot: rc10.Robot, daemon: MovingDaemon) -> None:
+    robot.wait_for_state()
+    daemon.angle_deg = 300
+    move = robot.move_to("wheel", 720)
+    robot.disable("yaw")
+    began_s = robot.link.now()
+    while robot.link.now() < began_s + 0.5:
+        robot.spin(0.1)
+    assert not move.done()
+    assert len(daemon.commands) >= 20

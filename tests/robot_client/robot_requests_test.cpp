@@ -1,3 +1,8 @@
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -123,6 +128,33 @@ TEST_F(RobotTest, LeavingGoesOnWithAnEstopThatNoStateShowsYet) {
   });
   EXPECT_TRUE(robot_->close());
   later.join();
+}
+
+TEST_F(RobotTest, AStopInVainEndsTheTargetsOfItsMotors) {
+  const std::pair<std::int8_t, std::string> refused{+response_t::STATUS_REFUSED, "too many at once"};
+  rc10d_.verdicts = {{"disable", refused}, {"estop", refused}};
+  connectEnabled();
+  see();
+  const std::vector<std::function<RequestResult()>> stops{
+      [&] { return robot_->disable({"lift"}); },
+      [&] { return robot_->disable(); },
+      [&] { return robot_->disable({"lift", "lfit"}); },
+      [&] { return robot_->request("disable", "yaw,lift"); },
+      [&] { return robot_->request("disable", ""); },
+      [&] { return robot_->request("estop", ""); },
+  };
+  for (const auto& stop : stops) {
+    ASSERT_TRUE(robot_->motor("lift").setTarget(Setpoint::totalAngle(10_deg)));
+    EXPECT_FALSE(stop());
+    see();  // all that was sent before has arrived
+    const auto before = rc10d_.commands().size();
+    ASSERT_TRUE(robot_->motor("wheel").setTarget(Setpoint::totalAngle(10_deg)));
+    ASSERT_TRUE(rc10d_.awaitCommands(before + 4));
+    const auto commands = rc10d_.commands();
+    for (auto sent = before; sent < commands.size(); ++sent) {
+      for (const auto& order : commands[sent].setpoints) EXPECT_EQ(order.motor, "wheel");
+    }
+  }
 }
 
 TEST_F(RobotTest, AnEstopInACallbackDoesNotWait) {

@@ -284,7 +284,10 @@ class Robot(RobotClient):
                 await self._until(lambda: None if self._unshown() else True, SHOWN_S)
 
     async def disable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
-        """Disables motors: each does its `on_disable`, which may hold, damp or brake it."""
+        """Disables motors: each does its `on_disable`, which may hold, damp or brake it.
+
+        Their moves end before it is sent, as those of rc10.Robot.disable().
+        """
         with self._disabling(names) as target:
             return await self.request("disable", target, timeout_s=timeout_s)
 
@@ -314,12 +317,12 @@ class Robot(RobotClient):
         return await self.gains(name, timeout_s=timeout_s)
 
     async def estop(self, timeout_s: float = 2.0) -> None:
-        """Stops the whole robot; latched until clear().
+        """Stops the whole robot; latched until clear(). All moves end, whatever comes of it.
 
         Repeated until the robot's state shows it. Errors are those of rc10.Robot.estop().
         """
         self._check_entered()
-        with self._requests.open("estop", "", {}) as request:
+        with self._open("estop", "", {}) as request:
             request.publish()
             # A state from the queue was published before, and proves nothing.
             self._receive()
@@ -347,7 +350,7 @@ class Robot(RobotClient):
         Args and errors are those of rc10.Robot.request().
         """
         self._check_entered()
-        with self._requests.open(operation, target, values or {}) as request:
+        with self._open(operation, target, values or {}) as request:
             request.publish()
             await self._repeat(request.publish, REPEAT_REQUEST_S, request.response, timeout_s)
             response = request.response()

@@ -269,7 +269,8 @@ class Robot(RobotClient):
     def disable(self, names: Names | None = None, timeout_s: float = 2.0) -> Response:
         """Disables motors: each does its `on_disable`, which may hold, damp or brake it.
 
-        Args and errors are those of enable().
+        Their moves end before it is sent: also when it is refused, or not answered, their targets
+        are not sent again. Args and errors are those of enable().
         """
         with self._disabling(names) as target:
             return self.request("disable", target, timeout_s=timeout_s)
@@ -319,7 +320,7 @@ class Robot(RobotClient):
         return self.gains(name, timeout_s=timeout_s)
 
     def estop(self, timeout_s: float = 2.0) -> None:
-        """Stops the whole robot; latched until clear().
+        """Stops the whole robot; latched until clear(). All moves end, whatever comes of it.
 
         Repeated until the robot's state shows it, so that lost messages do not matter.
 
@@ -328,7 +329,7 @@ class Robot(RobotClient):
             RequestRefused, RequestFailed: in the daemon's words.
         """
         self._check_open()
-        with self._requests.open("estop", "", {}) as request:
+        with self._open("estop", "", {}) as request:
             deadline_s = self._link.now() + timeout_s
             request.publish()
             # A state from the queue was published before, and proves nothing.
@@ -368,7 +369,7 @@ class Robot(RobotClient):
             Timeout: no answer; the message says what to check.
         """
         self._check_open()
-        with self._requests.open(operation, target, values or {}) as request:
+        with self._open(operation, target, values or {}) as request:
             deadline_s = self._link.now() + timeout_s
             while self._link.now() < deadline_s:
                 request.publish()

@@ -28,7 +28,7 @@ from rc10.moves import Move
 from rc10.orders import hindered, obstacle
 from rc10.recorder import Recorder
 from rc10.refusals import Refusals
-from rc10.requests import Requests
+from rc10.requests import Request, Requests
 from rc10.setpoints import Mode, Setpoint, angle_deg, coast, total_angle_deg
 from rc10.spelling import did_you_mean, meant
 from rc10.state import MotorStatus, RobotStatus
@@ -36,6 +36,7 @@ from rc10.validity import ENDED_MS, check_validity, lapses_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Set
+    from contextlib import AbstractContextManager
     from typing import Callable
 
     from rc10.diagnostics import Diagnostics
@@ -65,6 +66,9 @@ _MOVE_VALIDITY_MS = 100
 _STAMP_S = 1e-6
 # A state younger than this proves that the daemon runs and is heard.
 _LIVE_S = 1.0
+
+# Requests after which nothing is sent again to their motors.
+_STOPPING = ("disable", "estop")
 
 # Among names of motors; no motor's name is empty.
 _ALL = ""
@@ -340,6 +344,8 @@ class RobotClient:
     @contextmanager
     def _disabling(self, names: Names | None) -> Iterator[str]:
         """Gives the target of a disable request, and notes that it was carried out."""
+        names = None if names is None else list(_listed(names) or ())
+        self._end_moves(names)  # first: also those of a request that is never sent
         chosen = self._choose(names)
         for name in chosen or list(self._answered):
             self._answered.pop(name, None)
@@ -351,6 +357,20 @@ class RobotClient:
 
     def _target(self, names: Names | None) -> str:
         return ",".join(self._choose(names))
+
+    def _open(
+        self, operation: str, target: str, values: Mapping[str, float]
+    ) -> AbstractContextManager[Request]:
+        """Opens a request. One that stops motors ends their moves, whatever its answer is."""
+        if operation in _STOPPING:
+            one_by_one = target and operation == "disable"
+            self._end_moves(target.split(",") if one_by_one else None)
+        return self._requests.open(operation, target, values)
+
+    def _end_moves(self, names: Iterable[str] | None) -> None:
+        """Has the targets of these moves, or of all, lapse: they are not sent again."""
+        for name in self._moves.keys() & set(self._moves if names is None else names):
+            self._moves.pop(name).fail(f"the program has let go of {name}")
 
     def _let_go(self) -> str | None:
         """Ends what acts, as `at_end` says, and returns the target of a disable request, if any."""

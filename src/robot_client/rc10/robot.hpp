@@ -91,6 +91,7 @@ class Robot {
   void onEvent(std::function<void(const Event&)> callback) const;
 
   // Requests wait for rc10d's answer; lost ones are repeated under the same number and carried out once.
+  // Targets held for motors that a `disable` or `estop` names end before it is sent, whatever the answer.
   /// Until each motor is ACTIVE or has failed, and the state shows it. No names: all motors.
   RequestResult enable(const std::vector<std::string>& motors = {},
                        Duration timeout = std::chrono::seconds{2}) const;

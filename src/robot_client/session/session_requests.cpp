@@ -1,6 +1,7 @@
 #include "robot_client/session/session_requests.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "robot_client/session/motor_reasons.hpp"
 #include "robot_client/session/obstacle.hpp"
@@ -39,6 +40,7 @@ RequestResult SessionRequests::request(Operation operation, const std::vector<st
 
 RequestResult SessionRequests::request(const std::string& operation, const std::string& target,
                                        const std::map<std::string, double>& values, Duration timeout) {
+  releaseBefore(operation, target);
   if (auto may = core_.mayWait(operation); !may) return notSent(may.error().message);
   const auto deadline = timeNow() + timeout;
   std::optional<response_t> answer;
@@ -107,17 +109,29 @@ bool SessionRequests::showsEnabled(const std::vector<std::string>& motors) const
 }
 
 RequestResult SessionRequests::disable(const std::vector<std::string>& motors, Duration timeout) {
-  {
-    const Lock lock(core_.mutex);
-    targets_.release(motors);
-    core_.just_enabled.release(motors);
-  }
+  release(motors);  // also where a name is wrong, and nothing is sent
   auto answer = request(Operation::kDisable, motors, {}, timeout);
   if (answer) {
     const Lock lock(core_.mutex);
     core_.leaving.disabled(motors);
   }
   return answer;
+}
+
+void SessionRequests::release(const std::vector<std::string>& motors) {
+  const Lock lock(core_.mutex);
+  targets_.release(motors);
+  core_.just_enabled.release(motors);
+}
+
+// Whatever the answer will be, nothing is sent again to what is to stop.
+void SessionRequests::releaseBefore(const std::string& operation, const std::string& target) {
+  if (operation == toString(Operation::kEstop)) release({});
+  if (operation != toString(Operation::kDisable)) return;
+  std::vector<std::string> motors;
+  std::istringstream names(target);
+  for (std::string name; std::getline(names, name, ',');) motors.push_back(name);
+  release(motors);
 }
 
 void SessionRequests::onResponse(response_t message) {

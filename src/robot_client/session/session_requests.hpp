@@ -28,6 +28,8 @@ class SessionRequests {
   void onResponse(response_t message);
 
  private:
+  void release(const std::vector<std::string>& motors);
+  void releaseBefore(const std::string& operation, const std::string& target);
   [[nodiscard]] std::vector<MotorReason> reasonsIn(const std::string& message);
   // With the mutex held.
   void noteEnabled(const std::vector<std::string>& motors);
