@@ -14,8 +14,18 @@ import pytest
 import rc10
 from fake_daemon import FakeDaemon, setpoints
 from rc10 import aio
-from rc10.lcm_types import request_t, response_t, robot_state_t, setpoint_t, signals_t
+from rc10.lcm_types import (
+    counter_t,
+    request_t,
+    response_t,
+    robot_state_t,
+    service_request_t,
+    service_response_t,
+    setpoint_t,
+    signals_t,
+)
 from rc10.link import LcmLink
+from rc10.services import fingerprint
 
 # Long enough for any machine; nothing waits for it when all is well.
 PATIENCE_S = 30.0
@@ -292,6 +302,53 @@ async def test_recording_while_another_task_commands(
     recording = task.result()
     assert recording["wheel.target"][-1] == 60
     assert daemon.tick >= len(recording)
+
+
+def test_a_service_refuses_what_came_while_the_event_loop_stood_still() -> None:
+    class Clocked(LcmLink):
+        ahead_s = 0.0
+
+        def now(self) -> float:
+            return super().now() + self.ahead_s
+
+    async def main() -> None:
+        link = Clocked("memq://")
+        calls: list[int] = []
+
+        def handle(request: counter_t) -> counter_t:
+            calls.append(request.count)
+            return request
+
+        async with aio.Robot("demo", link, client="tester") as robot:
+            server = rc10.ServiceServer(robot.link, "echo", counter_t, counter_t, handle)
+            answers = rc10.Subscriber(link, "echo.response", service_response_t)
+
+            async def answer_to(number: int, away_s: float) -> int:
+                request = service_request_t()
+                request.client, request.seq, request.timeout_ms = "tester", number, 30_000
+                request.request_type = request.response_type = fingerprint(counter_t)
+                message = counter_t()
+                message.count = number
+                request.payload = message.encode()
+                request.size = len(request.payload)
+                link.publish(f"{server.name}.request", request.encode())
+                link.ahead_s += away_s
+                while answers.latest is None or answers.latest.message.seq != number:
+                    await asyncio.sleep(0)
+                status: int = answers.latest.message.status
+                return status
+
+            assert await answer_to(1, 60.0) == service_response_t.STATUS_REFUSED
+            assert await answer_to(2, 0.0) == service_response_t.STATUS_OK
+            # On a link without any message the event loop still tells that it runs.
+            link.ahead_s += 60.0
+            seen_s = link.empty_s()
+            while link.empty_s() == seen_s:
+                await asyncio.sleep(0.001)
+            assert await answer_to(3, 0.0) == service_response_t.STATUS_OK
+            assert calls == [2, 3]
+
+    asyncio.run(asyncio.wait_for(main(), PATIENCE_S))
 
 
 def test_it_wants_to_be_entered() -> None:

@@ -3,7 +3,8 @@ from __future__ import annotations
 import pytest
 
 import rc10
-from rc10.lcm_types import counter_t, named_value_t, service_request_t
+from rc10.lcm_types import counter_t, named_value_t, service_request_t, service_response_t
+from rc10.services import fingerprint
 from virtual_link import VirtualLink
 
 
@@ -130,3 +131,115 @@ def test_an_envelope_carries_the_fingerprints_of_the_types(
     assert (
         heard[0].request_type.to_bytes(8, "big", signed=True) == first == counter_t().encode()[:8]
     )
+
+
+def ask(link: VirtualLink, number: int, timeout_ms: int = 500) -> None:
+    """Sends a call, and does not wait for its answer."""
+    request = service_request_t()
+    request.client, request.session, request.seq = "tester", 7, number
+    request.timeout_ms = timeout_ms
+    request.request_type = fingerprint(counter_t)
+    request.response_type = fingerprint(named_value_t)
+    request.payload = counter(number).encode()
+    request.size = len(request.payload)
+    link.publish("double.request", request.encode())
+
+
+@pytest.fixture
+def answers(link: VirtualLink) -> list[tuple[int, int, str]]:
+    """Number, status and words of what was answered."""
+    heard: list[tuple[int, int, str]] = []
+
+    def on_answer(data: bytes) -> None:
+        answer = service_response_t.decode(data)
+        heard.append((answer.seq, answer.status, answer.message))
+
+    link.subscribe("double.response", on_answer, 100)
+    return heard
+
+
+TOO_LATE = "too late: the client does not wait for it any more"
+
+
+def late(number: int) -> tuple[int, int, str]:
+    return number, service_response_t.STATUS_REFUSED, TOO_LATE
+
+
+def done(number: int) -> tuple[int, int, str]:
+    return number, service_response_t.STATUS_OK, ""
+
+
+def test_a_call_that_nobody_waits_for_any_more_is_refused(
+    doubler: Doubler, link: VirtualLink, answers: list[tuple[int, int, str]]
+) -> None:
+    link.pump(0.0)
+    link.after(1.0, lambda: ask(link, 1))
+    link.after(1.1, lambda: ask(link, 1))
+    link.pass_time(8.0)  # busy, and does not receive
+    link.pump(0.0)
+    assert doubler.calls == 0
+    assert answers == [late(1), late(1)]
+    # Sent while it receives, the next one is carried out.
+    link.after(3.0, lambda: ask(link, 2))
+    link.pump(5.0)
+    link.pump(0.0)
+    assert answers[2:] == [done(2)]
+
+
+def test_a_call_that_waited_while_another_was_carried_out_is_refused(
+    link: VirtualLink, answers: list[tuple[int, int, str]]
+) -> None:
+    def slowly(request: counter_t) -> named_value_t:
+        link.pass_time(8.0)
+        answer = named_value_t()
+        answer.value = float(request.count)
+        return answer
+
+    server = rc10.ServiceServer(link, "double", counter_t, named_value_t, slowly)
+    link.pump(0.0)
+    ask(link, 1)
+    ask(link, 2)
+    ask(link, 3, timeout_ms=20_000)
+    link.pump(0.0)
+    assert server.name == "double"
+    assert answers == [done(1), late(2), done(3)]
+
+
+def test_a_call_that_came_while_the_program_was_stopped_in_its_sleep_is_refused(
+    doubler: Doubler, link: VirtualLink, answers: list[tuple[int, int, str]]
+) -> None:
+    def stopped() -> None:  # Ctrl-Z
+        ask(link, 1)
+        link.time_s += 8.0
+
+    link.after(0.1, stopped)
+    link.pump(5.0)
+    link.pump(0.0)
+    assert doubler.calls == 0
+    assert answers == [late(1)]
+
+
+def test_a_call_within_its_time_is_carried_out_though_the_program_was_away(
+    link: VirtualLink, answers: list[tuple[int, int, str]]
+) -> None:
+    link.pass_time(60.0)
+    doubler = Doubler(link)  # before that it heard no call
+    link.after(0.2, lambda: ask(link, 1))
+    link.pass_time(0.4)
+    link.pump(0.0)
+    link.pump(0.0)
+    assert doubler.calls == 1
+    assert answers == [done(1)]
+
+
+def test_a_call_that_was_carried_out_is_answered_again_however_late(
+    doubler: Doubler, link: VirtualLink, answers: list[tuple[int, int, str]]
+) -> None:
+    ask(link, 1)
+    link.pump(0.0)
+    ask(link, 1)
+    link.pass_time(8.0)
+    link.pump(0.0)
+    link.pump(0.0)
+    assert doubler.calls == 1
+    assert answers == [done(1), done(1)]

@@ -27,7 +27,7 @@ class VirtualLink(LcmLink):
         """Lets time pass while the client does something else than receive."""
         self._pass_until(self.time_s + seconds, lambda: False)
 
-    def _wait(self, timeout_s: float) -> bool:
+    def _sleep(self, timeout_s: float) -> bool:
         if not self._readable(0.0):
             self._pass_until(self.time_s + timeout_s, lambda: self._readable(0.0))
         return self._readable(0.0)

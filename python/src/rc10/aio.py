@@ -52,6 +52,9 @@ _log = logging.getLogger("rc10")
 
 T = TypeVar("T")
 
+# So old at most is a message when the event loop hands it over, unless it stood still.
+_PULSE_S = 0.05
+
 
 def connect(
     robot: str,
@@ -129,6 +132,7 @@ class Robot(RobotClient):
         self._loop: asyncio.AbstractEventLoop | None = None
         self._waiters: set[asyncio.Future[None]] = set()
         self._timer: asyncio.TimerHandle | None = None
+        self._pulse: asyncio.TimerHandle | None = None
 
     # ---- entering and leaving ----------------------------------------------------------------
 
@@ -136,6 +140,7 @@ class Robot(RobotClient):
         self._check_open()
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(self._link.fileno(), self._receive)
+        self._on_pulse()
         return self
 
     async def __aexit__(
@@ -162,8 +167,9 @@ class Robot(RobotClient):
             _log.warning("leaving %s: motors may still be enabled: %s", self._name, error)
         finally:
             self._closed = True
-            if self._timer is not None:
-                self._timer.cancel()
+            for timer in (self._timer, self._pulse):
+                if timer is not None:
+                    timer.cancel()
             if self._loop is not None:
                 self._loop.remove_reader(self._link.fileno())
             self._link.close()
@@ -412,6 +418,12 @@ class Robot(RobotClient):
     def _schedule(self) -> None:
         if self._loop is not None and self._timer is None and self._moves:
             self._timer = self._loop.call_later(RESEND_S, self._on_timer)
+
+    def _on_pulse(self) -> None:
+        """Receives also where nothing comes, so that the link knows since when."""
+        assert self._loop is not None
+        self._pulse = self._loop.call_later(_PULSE_S, self._on_pulse)
+        self._receive()
 
     def _on_timer(self) -> None:
         self._timer = None

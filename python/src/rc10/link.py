@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import select
@@ -54,6 +55,9 @@ class Link(Protocol):
     def now(self) -> float:
         """Monotonic time in seconds."""
 
+    def empty_s(self) -> float:
+        """When no message waited last: what is handled now came after that."""
+
     def close(self) -> None:
         """Frees the transport."""
 
@@ -76,6 +80,7 @@ class LcmLink:
         except (RuntimeError, OSError) as error:
             raise LinkError(_start_failure(url)) from error
         self._own = OwnDatagrams(_effective(url), descriptors() - before)
+        self._empty_s = -math.inf
 
     @property
     def lcm(self) -> lcm.LCM:
@@ -100,12 +105,12 @@ class LcmLink:
         """Waits at most `timeout_s` for a message, then handles all that wait."""
         handled = 0
         self._own.look()
-        ready = self._wait(max(0.0, timeout_s))
+        ready = self._message_waits() or self._wait(max(0.0, timeout_s))
         while ready and handled < _MAX_PER_PUMP:
             self._own.look()  # first, so that nothing of others comes after it
             self.lcm.handle()
             handled += 1
-            ready = self._readable(0.0)
+            ready = self._message_waits()
         return handled
 
     @contextmanager
@@ -130,18 +135,39 @@ class LcmLink:
         """Monotonic time in seconds."""
         return time.monotonic()
 
+    def empty_s(self) -> float:
+        """When no message waited last; -inf before the first pump()."""
+        return self._empty_s
+
     def close(self) -> None:
         """Frees the sockets and ends LCM's receiving thread."""
         self._own.close()
         self._lcm = None
 
-    def _wait(self, timeout_s: float) -> bool:
-        end_s = time.monotonic() + timeout_s
-        while not (ready := self._readable(min(timeout_s, _LONGEST_SLEEP_S))):
-            timeout_s = end_s - time.monotonic()
-            if timeout_s <= 0.0:
-                break
+    def _message_waits(self) -> bool:
+        """Whether a message waits already."""
+        now_s = self.now()  # before looking: what comes meanwhile is younger
+        ready = self._readable(0.0)
+        if not ready:
+            self._empty_s = now_s
         return ready
+
+    def _wait(self, timeout_s: float) -> bool:
+        """Waits until a message comes."""
+        end_s = self.now() + timeout_s
+        while True:
+            began_s = self.now()
+            ready = self._sleep(min(timeout_s, _LONGEST_SLEEP_S))
+            now_s = self.now()
+            # Not after a stop of the program in its sleep (Ctrl-Z): it may have come at any time.
+            if now_s - began_s < 2 * _LONGEST_SLEEP_S:
+                self._empty_s = now_s
+            timeout_s = end_s - now_s
+            if ready or timeout_s <= 0.0:
+                return ready
+
+    def _sleep(self, timeout_s: float) -> bool:
+        return self._readable(timeout_s)
 
     def _readable(self, timeout_s: float) -> bool:
         # Not LCM's own handle_timeout: a signal makes that fail with an IOError, and a Ctrl-C

@@ -26,7 +26,9 @@ class ServiceServer(Generic[RequestT, ResponseT]):
     """Answers calls of one service while the link is pumped: by spin(), rate() or a request.
 
     A call that comes again is answered again and not carried out again; the last 64 answers are
-    remembered. The channels are `<name>.request` and `<name>.response`.
+    remembered. One that may have waited for longer than its client does, while the program was busy
+    with something else, is refused: receive more often than that. The channels are
+    `<name>.request` and `<name>.response`.
 
     Args:
         link: Robot.link, or an LcmLink of your own.
@@ -50,6 +52,7 @@ class ServiceServer(Generic[RequestT, ResponseT]):
         self._types = (fingerprint(request_type), fingerprint(response_type))
         self._handler = handler
         self._answers: OrderedDict[tuple[str, int, int], bytes] = OrderedDict()
+        self._began_s = link.now()
         link.subscribe(f"{name}.request", self._on_request, _QUEUE)
 
     def _on_request(self, data: bytes) -> None:
@@ -76,6 +79,10 @@ class ServiceServer(Generic[RequestT, ResponseT]):
                 f"client and server were built with other definitions of the types of '{self.name}'"
             )
             return answer
+        if self._is_late(request):
+            answer.status = service_response_t.STATUS_REFUSED
+            answer.message = "too late: the client does not wait for it any more"
+            return answer
         try:
             result: Any = self._handler(self._request_type.decode(request.payload))
             answer.payload = result.encode()
@@ -84,6 +91,11 @@ class ServiceServer(Generic[RequestT, ResponseT]):
             answer.message = str(error) or type(error).__name__
         answer.size = len(answer.payload)
         return answer
+
+    def _is_late(self, request: service_request_t) -> bool:
+        """Whether it may have come so long ago that nobody waits for its answer any more."""
+        came_s: float = max(self._link.empty_s(), self._began_s)  # at the earliest
+        return self._link.now() - came_s > request.timeout_ms / 1000
 
 
 class ServiceClient(Generic[RequestT, ResponseT]):
