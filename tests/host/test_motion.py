@@ -6,10 +6,11 @@ import csv
 import json
 import shlex
 import signal
+import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from hostlib import Daemon
+from hostlib import Daemon, Program
 from hostlib.daemon import ARM, BIN, REPO
 from hostlib.page import Block, blocks_run_by, robots, run
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from hostlib import Motor, Program
+    from hostlib import Motor
 
 # As docs/tuning.md has it; its feedback may be as old as a busy machine makes it. No current passes
 # the limit of a step, whatever a late tick demands.
@@ -225,6 +226,13 @@ def test_a_test_that_is_killed_leaves_no_torque(robot: Daemon) -> None:
     robot.wait_motor("wheel", without_torque, "coasts")
 
 
+def test_a_test_whose_stdin_is_closed_does_not_begin(robot: Daemon) -> None:
+    abort, told = aborted(robot, "wheel", *LONG, "--end-with-stdin")
+    assert abort["criterion"] == "interrupted"
+    assert "the program that runs it has ended (--end-with-stdin)" in told
+    assert robot.state()["motors"][0]["owner"] == ""
+
+
 def test_feedback_that_grows_old_ends_the_test(robot: Daemon) -> None:
     try:
         told = ended_by(
@@ -357,3 +365,18 @@ def test_python_raises_the_criterion(program: str) -> None:
         )
     assert raised.value.criterion == "current"
     assert raised.value.value > raised.value.limit == 2.0
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_a_python_program_that_is_killed_ends_its_test_of_motion(
+    robot: Daemon, program: str, number: signal.Signals
+) -> None:
+    code = (
+        "from rc10.motion_test import run_motion_test\n"
+        "run_motion_test('wheel', 'step', 60, max_current_a=12, max_speed_rpm=1000, seconds=60,"
+        f" max_feedback_age_s=2, dead_man_ms=1000, program={program!r})"
+    )
+    with Program(sys.executable, "-c", code) as caller:
+        robot.wait_motor("wheel", lambda motor: float(motor["velocity_rpm"]) > 50.0, "turns")
+        caller.signal(number)  # to it alone, not to its group
+        robot.wait_motor("wheel", without_torque, "coasts")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -105,6 +106,8 @@ def run_motion_test(
 ) -> MotionResult:
     """Moves an ACTIVE motor, and judges how it follows; the options are those of rc10ctl.
 
+    When this program ends meanwhile, killed too, the test ends and the motor is let go.
+
     Args:
         motor: its name.
         kind: of the target over time.
@@ -131,7 +134,8 @@ def run_motion_test(
         MotionAborted: a criterion was not met; the text has cause and remedy.
         Rc10Error: the test could not begin.
     """
-    words = [program, "test-motion", "--json", f"--max-current={max_current_a!r}"]
+    words = [program, "test-motion", "--json", "--end-with-stdin"]
+    words += [f"--max-current={max_current_a!r}"]
     words += [f"--mode={mode}", f"--base={base!r}", f"--from={from_hz!r}", f"--to={to_hz!r}"]
     words += [f"--max-feedback-age={max_feedback_age_s!r}", f"--priority={priority}"]
     words += [f"--dead-man-ms={dead_man_ms}"]
@@ -172,7 +176,7 @@ def run_motion_test(
 
 def _result_of(words: list[str]) -> dict[str, Any]:
     try:
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        done = _run(words)
     except FileNotFoundError as error:
         raise Rc10Error(
             f"{words[0]} is not installed here: install rc10d's package, or give program="
@@ -187,6 +191,16 @@ def _result_of(words: list[str]) -> dict[str, Any]:
     if done.returncode != 0:
         raise Rc10Error(said)
     return result
+
+
+def _run(words: list[str]) -> subprocess.CompletedProcess[str]:
+    """Runs a program whose stdin ends with this one: the kernel closes the pipe in any case."""
+    stdin, held = os.pipe()
+    try:
+        return subprocess.run(words, stdin=stdin, capture_output=True, text=True, check=False)
+    finally:
+        os.close(stdin)
+        os.close(held)
 
 
 def _number(value: float | None) -> float:

@@ -1,8 +1,10 @@
 #include "session.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -52,6 +54,14 @@ void catchInterrupt() {
   struct sigaction action {};
   action.sa_handler = [](int) { interrupt_seen = 1; };  // no SA_RESTART: it ends poll()
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+}
+
+bool stdinEnded() noexcept {
+  pollfd entry{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+  if (::poll(&entry, 1, 0) <= 0) return false;
+  if ((entry.revents & POLLIN) == 0) return true;  // closed
+  std::array<char, 256> thrown_away{};
+  return ::read(STDIN_FILENO, thrown_away.data(), thrown_away.size()) == 0;
 }
 
 void waitReadable(const LinkClient& rc10d, Duration timeout) {

@@ -59,6 +59,10 @@ void complainInJson();
 [[nodiscard]] bool interrupted() noexcept;
 void catchInterrupt();
 
+/// Whether nobody can write to stdin any more: the kernel closes a pipe however its program ends. Does not
+/// wait; what was written is thrown away.
+[[nodiscard]] bool stdinEnded() noexcept;
+
 /// Waits until something can be received, at most `timeout` and at most until Ctrl-C.
 void waitReadable(const LinkClient& rc10d, Duration timeout);
 

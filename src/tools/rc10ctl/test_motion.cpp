@@ -41,6 +41,7 @@ struct TestMotionOptions {
   bool stop_at_limits = false;
   int dead_man_ms = 200;
   int priority = 0;
+  bool end_with_stdin = false;
   std::string csv;
   std::string bode;
 };
@@ -126,6 +127,13 @@ void printJson(const client::MotionReport& report, const client::MotionRun& run,
   std::puts(client::lineOf(json).c_str());
 }
 
+// Reason to end it before its time; nullptr: none.
+const char* interruption(const TestMotionOptions& options) {
+  if (interrupted()) return "interrupted before its end";
+  if (options.end_with_stdin && stdinEnded()) return "the program that runs it has ended (--end-with-stdin)";
+  return nullptr;
+}
+
 ExitCode testMotion(const Global& global, const TestMotionOptions& options) {
   const auto settings = settingsIn(options);
   if (!settings) return complain(settings.error(), ExitCode::kUsage);
@@ -141,7 +149,7 @@ ExitCode testMotion(const Global& global, const TestMotionOptions& options) {
   client::MotionSession session(*rc10d, *run, options.priority);
   while (!run->over()) {
     session.receive();
-    if (interrupted()) run->end(client::Criterion::kInterrupted, "interrupted before its end");
+    if (const auto* why = interruption(options)) run->end(client::Criterion::kInterrupted, why);
     session.send(steady_clock::now());
     waitReadable(*rc10d, run->due() - steady_clock::now());
   }
@@ -224,6 +232,8 @@ void addTestMotion(CLI::App& app, Action& action) {
   addShape(*verb, *options);
   addCriteria(*verb, *options);
   verb->add_option("--priority", options->priority, "a higher one takes the motor over from a lower one");
+  verb->add_flag("--end-with-stdin", options->end_with_stdin,
+                 "ends as by Ctrl-C when stdin is closed: with the program that holds its other end");
   verb->add_option("--csv", options->csv, "writes each tick")->type_name("FILE");
   verb->add_option("--bode", options->bode, "writes gain, phase and coherence")->type_name("FILE");
   verb->callback([&action, options] {
