@@ -256,10 +256,14 @@ class Remote : public Module_Base {
     const auto up = switchUp(*arm_channel_, received);
     if (!up) return;
     if (!*up) {
-      if (armed_) disableWhatIsOn(robot);
+      // Whoever enabled it; down after a gap, it went down in that.
+      if (std::exchange(seen_up_, false)) disableWhatIsOn(robot);
       armed_ = false;
       switch_known_ = true;
-    } else if (switch_known_ && !armed_) {
+      return;
+    }
+    seen_up_ = true;
+    if (switch_known_ && !armed_) {
       armed_ = true;
       arming_until_ = tick.now + kArming;
       std::fill(was_active_.begin(), was_active_.end(), false);
@@ -321,6 +325,7 @@ class Remote : public Module_Base {
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;
   bool switch_known_ = false;  ///< It was seen down since the remote was heard again.
+  bool seen_up_ = false;       ///< It was up when it was last seen, before a gap too.
   bool told_to_disable_ = false;
   MonotonicTime lost_since_{};
   MonotonicTime arming_until_{};

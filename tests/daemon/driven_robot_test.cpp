@@ -142,6 +142,16 @@ TEST_F(DrivenRobot, TheRemoteEnablesTheRobotAndBeatsThePlannerInTheNextTick) {
   EXPECT_EQ(owner(), "planner") << "who may go on as soon as the remote has let go";
 }
 
+TEST_F(DrivenRobot, TheRemoteDisablesWhatAProgramHasEnabled) {
+  run(100);
+  (void)robot_.order(Operation::kEnable);
+  run(200);
+  ASSERT_TRUE(allAre(MotorStatus::kActive));
+  remote_.left_switch = Dr16Input::Switch::kDown;
+  run(50);
+  EXPECT_TRUE(allAre(MotorStatus::kReady));
+}
+
 TEST_F(DrivenRobot, ALostRemoteBringsTheRobotToRestAndDisablesItLater) {
   run(100);
   arm();

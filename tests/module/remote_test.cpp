@@ -1,5 +1,6 @@
 #include "module/remote.hpp"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -99,6 +100,11 @@ class Remote : public ::testing::Test {
     return std::any_of(asked_.begin(), asked_.end(),
                        [&](const auto& asked) { return asked.request == request; });
   }
+  /// Motors that it has asked to disable.
+  std::size_t disablings() {
+    return static_cast<std::size_t>(std::count_if(
+        asked_.begin(), asked_.end(), [](const auto& a) { return a.request == RobotRequest::kDisable; }));
+  }
 
   FakeRobot robot_{2};
   std::unique_ptr<Module_Base> module_;
@@ -164,6 +170,43 @@ TEST_F(Remote, TheSwitchGoingDownWhereNothingIsOnLetsGoOfNothing) {
   armSwitch(Dr16Input::Switch::kMiddle);
   ASSERT_FALSE(asked_.empty());
   EXPECT_EQ(asked_.front().request, RobotRequest::kDisableUnasked);
+}
+
+TEST_F(Remote, TheSwitchGoingDownDisablesWhatAnotherClientHasEnabled) {
+  build();
+  armSwitch(Dr16Input::Switch::kUp);  // since the start: it enables nothing
+  ASSERT_EQ(armed(), 0.0);
+  ASSERT_THAT(asked_, IsEmpty());
+  armSwitch(Dr16Input::Switch::kDown);
+  EXPECT_EQ(disablings(), 2U);
+  run(200);
+  EXPECT_EQ(disablings(), 2U) << "once: a page may enable with the switch down";
+}
+
+TEST_F(Remote, SoItDoesWhenItWasUpAfterALongLoss) {
+  build();
+  arm();
+  run(1200, false);
+  run(100);
+  ASSERT_EQ(armed(), 0.0);
+  ASSERT_EQ(disablings(), 0U);
+  armSwitch(Dr16Input::Switch::kMiddle);
+  EXPECT_EQ(disablings(), 2U);
+}
+
+TEST_F(Remote, ASwitchThatWentDownInALongLossDisablesWhenItIsHeard) {
+  build();
+  arm();
+  run(1200, false);
+  armSwitch(Dr16Input::Switch::kDown);
+  EXPECT_EQ(disablings(), 2U) << "what was enabled meanwhile";
+}
+
+TEST_F(Remote, ASwitchThatIsFirstSeenDownDisablesNothing) {
+  build();
+  armSwitch(Dr16Input::Switch::kDown);
+  run(200);
+  EXPECT_THAT(asked_, IsEmpty());
 }
 
 TEST_F(Remote, OneDamagedFrameIsNoMoveOfTheSwitch) {
