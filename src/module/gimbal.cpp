@@ -12,6 +12,7 @@
 #include "app/units.hpp"
 #include "module/carried_rate.hpp"
 #include "module/gimbal_axis.hpp"
+#include "module/sensed_angle.hpp"
 
 namespace rc10 {
 namespace {
@@ -127,13 +128,15 @@ class Gimbal : public Module_Base {
     compare(tick, robot);
     const double imu_yaw_deg = read(robot, kImuYaw);
     const bool stabilised = std::isfinite(imu_yaw_deg);
-    const double yaw_deg = stabilised ? imu_yaw_deg : static_cast<double>(yaw.angle_deg);
+    const double yaw_deg = sensed_yaw_.step(imu_yaw_deg, static_cast<double>(yaw.angle_deg));
     const double imu_pitch_deg = read(robot, kImuPitch);
     const bool by_imu_pitch = std::isfinite(imu_pitch_deg);
     const double motor_pitch_deg = wrapHalfTurn(static_cast<double>(pitch.angle_deg));
-    const double pitch_deg = by_imu_pitch ? imu_pitch_deg : motor_pitch_deg;
+    // Its last word was wrong by twice the way since, which would lead beyond pitch_max_deg.
+    if (opposed(kImuPitch)) sensed_pitch_.forget();
+    const double pitch_deg = sensed_pitch_.step(imu_pitch_deg, motor_pitch_deg);
     const bool ready = robot.obeys(yaw_motor_) && robot.obeys(pitch_motor_) && yaw.zeroed && pitch.zeroed;
-    // The direction is kept, as an angle in the new frame.
+    // The direction is kept; the chassis may have turned by the time the sensor is back.
     const bool restarts = !ready || !was_ready_;
     if (restarts || stabilised != was_stabilised_) {
       if (!restarts && !opposed(kImuYaw)) robot.report(stabilised ? kBack : kLost);
@@ -279,6 +282,8 @@ class Gimbal : public Module_Base {
   std::array<std::string, kImuSignals> names_;
   std::array<double, kImuSignals> signs_;
   std::array<std::optional<SignalPlace>, kImuSignals> places_;
+  SensedAngle sensed_yaw_;
+  SensedAngle sensed_pitch_;
   GimbalAxis yaw_;
   GimbalAxis pitch_;
   MotionMatch yaw_match_{kAngleMatch};

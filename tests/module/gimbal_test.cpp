@@ -220,17 +220,38 @@ TEST_F(Gimbal, WithoutItsSensorItHoldsToTheChassisAndNothingJumps) {
   chassis_deg_ = 100.0;
   aim(130.0, 0.0);
   run(2000);
-  module_->clearInputs();
-  imu_heard_ = false;
   held_deg_ = world();
   worst_deg_ = 0.0;
+  for (const bool aimed : {true, false}) {
+    if (!aimed) module_->clearInputs();
+    for (const bool heard : {false, true}) {
+      imu_heard_ = heard;
+      run(500);
+      EXPECT_EQ(output(kStabilised), heard ? 1.0 : 0.0);
+      EXPECT_LT(worst_deg_, 0.5) << aimed;
+      EXPECT_NEAR(output(kYaw), 130.0, 0.5) << "for a client that aims from there";
+      EXPECT_NEAR(output(kTargetYaw), 130.0, 0.5);
+    }
+  }
+  EXPECT_THAT(events_, ElementsAre(0U, 1U, 0U, 1U));
+}
+
+TEST_F(Gimbal, WithoutItsSensorAnglesTurnWithTheChassisUntilItIsBack) {
+  build(true);
+  chassis_deg_ = 100.0;
+  aim(130.0, 0.0);
+  run(2000);
+  imu_heard_ = false;
+  run(10);
+  chassis_deg_ = 140.0;
   run(500);
-  EXPECT_LT(worst_deg_, 0.5);
-  EXPECT_EQ(output(kStabilised), 0.0);
+  EXPECT_NEAR(output(kRelativeYaw), 30.0, 0.5);
+  aim(120.0, 0.0);
+  run(1000);
+  EXPECT_NEAR(output(kRelativeYaw), 20.0, 0.5);
   imu_heard_ = true;
-  run(500);
-  EXPECT_LT(worst_deg_, 0.5);
-  EXPECT_THAT(events_, ElementsAre(0U, 1U));
+  run(1000);
+  EXPECT_NEAR(world(), 120.0, 0.5);
 }
 
 TEST_F(Gimbal, AfterItWasDisabledItLooksWhereItIs) {
@@ -305,7 +326,7 @@ class LateGimbal : public ::testing::Test {
     };
     put(0, std::remainder(yaw_sign_ * seen.yaw_deg, 360.0));
     put(1, rate_sign_ * seen.yaw_rate_deg_s + noise_(random_));
-    put(2, pitch_sign_ * seen.pitch_deg + 0.1 * noise_(random_));
+    put(2, imu_heard_ ? pitch_sign_ * seen.pitch_deg + 0.1 * noise_(random_) : kNoSignal);
   }
   // The velocity loop of a light rotor.
   void obey(std::size_t index) {
@@ -338,6 +359,7 @@ class LateGimbal : public ::testing::Test {
   std::minstd_rand random_{7};
   std::normal_distribution<double> noise_{0.0, 0.2};
   std::array<double, 2> rpm_{};
+  bool imu_heard_ = true;  ///< Its pitch.
   int lag_ticks_ = 0;
   int imu_period_ = 1;
   int tick_ = 0;
@@ -439,13 +461,31 @@ TEST_F(LateGimbal, AHandThatTurnsADisabledGimbalShowsTheSignBeforeItIsEnabled) {
 
 TEST_F(LateGimbal, AYawOrYawRateOfTheWrongSignIsFoundToo) {
   yaw_sign_ = -1.0;
+  chassis_deg_ = 100.0;
   build(7);
   run(300);
-  aim(20.0, 0.0);
+  aim(-80.0, 0.0);  // 20 deg from where it seems to look
   run(2000);
   EXPECT_THAT(events_, ElementsAre(3U));
   EXPECT_EQ(output(kStabilised), 0.0);
-  EXPECT_NEAR(world(), 20.0, 0.2) << "to the chassis";
+  EXPECT_NEAR(output(kYaw), -80.0, 0.2) << "to the chassis, from there on";
+  EXPECT_NEAR(world(), 120.0, 15.0) << "twice the way until it was found";
+}
+
+TEST_F(LateGimbal, APitchThatIsAimedStaysWithoutItsSensorAndWhenThatIsBack) {
+  chassis_pitch_deg_ = 10.0;
+  build(7);
+  run(300);
+  aim(0.0, 5.0);
+  run(2000);
+  ASSERT_NEAR(pitch(), -5.0, 0.2);
+  for (const bool heard : {false, true}) {
+    imu_heard_ = heard;
+    for (int i = 0; i < 500; ++i) {
+      run(1);
+      ASSERT_NEAR(pitch(), -5.0, 0.5) << heard;
+    }
+  }
 }
 
 TEST_F(LateGimbal, AYawRateOfTheWrongSignIsNotTakenOff) {
