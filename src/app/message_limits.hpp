@@ -15,5 +15,8 @@ inline constexpr std::size_t kMaxNameBytes = 31;
 inline constexpr Duration kMaxValidity = std::chrono::milliseconds{1000};
 /// Validity of a message that says 0.
 inline constexpr Duration kDefaultValidity = std::chrono::milliseconds{50};
+/// A request that waited longer is refused: nobody expects an `enable` any more that was sent long ago. One
+/// that stops motors is carried out however long it waited.
+inline constexpr Duration kMaxRequestAge = std::chrono::seconds{1};
 
 }  // namespace rc10

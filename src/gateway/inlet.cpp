@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "app/message_limits.hpp"
 #include "app/utime.hpp"
 #include "rc10_version.hpp"
 

@@ -19,10 +19,6 @@ namespace rc10::gateway {
 /// on what is whole, each with the time at which this host received it.
 class Inlet {
  public:
-  /// A request that waited longer is answered with a refusal instead: nobody expects an `enable` any more
-  /// that was sent long ago. Requests that stop motors are always passed on.
-  static constexpr Duration kMaxRequestAge = std::chrono::seconds{1};
-
   Inlet(LinkClient& rc10d, Outlet& outlet);
 
   /// The channels to subscribe to.

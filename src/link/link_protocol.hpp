@@ -159,7 +159,7 @@ struct Request {
   Name client;
   std::uint64_t session = 0;
   std::int64_t seq = 0;
-  std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC at which this host received it; 0: not known.
+  std::int64_t received_ns = 0;  ///< CLOCK_MONOTONIC, and old: refused (kMaxRequestAge). 0: not known.
   Origin origin{};
   Text<32> operation;
   Text<1024> target;  ///< Motor names separated by commas; empty: all.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/message_limits.hpp"
 #include "client/find_motor.hpp"
 #include "config/sha256.hpp"
 #include "link/run_dir.hpp"
@@ -21,8 +22,6 @@ constexpr std::uint64_t kPublishEvery = kTurnsPerSecond / 25;
 
 // From the moment at which the page sent its renewal.
 constexpr Duration kHeldLease = std::chrono::milliseconds{150};
-// As the requests of LCM: nobody expects any more that it is done.
-constexpr Duration kLatestRequest = std::chrono::seconds{1};
 // After a wrong token, for all pages together: opening another one gives no more tries.
 constexpr Duration kWrongTokenPause = std::chrono::milliseconds{200};
 
@@ -345,7 +344,7 @@ void Hub::ask(Page& page, const AskRobot& wanted, MonotonicTime now, Duration ag
 
 // A connection that was held up delivers in the end what nobody expects to be done any more.
 std::string Hub::whyTooLate(Duration age) {
-  if (age <= kLatestRequest) return {};
+  if (age <= kMaxRequestAge) return {};
   return "it came " + std::to_string(age / std::chrono::milliseconds{1}) +
          " ms late, the connection was held up, and it was not done: ask again";
 }

@@ -30,6 +30,9 @@ inline link::Command linkCommand(std::int64_t seq, MonotonicTime received,
   return out;
 }
 
+/// Time of a request that does not say when it was received.
+inline constexpr MonotonicTime kAnyTime{};
+
 /// A request of client "pilot", session 9.
 inline link::Request linkRequest(std::int64_t seq, std::string_view operation, std::string_view target = {}) {
   link::Request out;

@@ -104,7 +104,7 @@ class Desk {
       value.name = text<link::Text<48>>(input);
       value.value = input.take<double>();
     }
-    const auto outcome = desk_.begin(message, {.connection = 1});
+    const auto outcome = desk_.begin(message, {.connection = 1}, kNow);
     require(!outcome.order || !outcome.response);
     if (outcome.response) told(*outcome.response);
     if (!outcome.order) return;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/message_limits.hpp"
 #include "client/fake_rc10d.hpp"
 #include "client/sample_messages.hpp"
 #include "gateway/clock_sample.hpp"
@@ -125,11 +126,11 @@ TEST_F(Bridge, RefusesARequestThatWaitedTooLong) {
 TEST_F(Bridge, PassesARequestOnThatIsAsOldAsItMayBe) {
   auto enable = requestWith(0);
   enable.operation = "enable";
-  EXPECT_TRUE(arrive("hero.v1.request", encoded(enable), Inlet::kMaxRequestAge));
+  EXPECT_TRUE(arrive("hero.v1.request", encoded(enable), kMaxRequestAge));
   link::Request request;
   ASSERT_TRUE(rc10d_.receive(request));
   EXPECT_EQ(request.operation.view(), "enable");
-  EXPECT_TRUE(arrive("hero.v1.request", encoded(enable), Inlet::kMaxRequestAge + 1ns));
+  EXPECT_TRUE(arrive("hero.v1.request", encoded(enable), kMaxRequestAge + 1ns));
   EXPECT_TRUE(rc10d_.receiveBytes().empty());
 }
 

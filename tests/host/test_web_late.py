@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -36,3 +37,22 @@ def test_a_request_that_was_held_up_on_its_way_does_nothing(daemon: Daemon, tmp_
         for operation in ("disable", "estop"):
             assert ask(page, operation, late_s=3)["status"] == "ok"
         assert daemon.state()["state"] == "ESTOP"
+
+
+def test_a_request_that_waited_for_an_rc10d_that_stood_still_does_nothing(
+    daemon: Daemon, tmp_path: Path
+) -> None:
+    web = Web(daemon, tmp_path)
+    with web.program, web.page() as page:
+        assert page.ask("disable", "wheel")["status"] == "ok"
+        daemon.must("estop")
+        daemon.program.signal(signal.SIGSTOP)
+        try:
+            told = page.ask("clear")
+        finally:
+            daemon.program.signal(signal.SIGCONT)
+        assert (told["status"], told["message"]) == ("failed", "rc10d does not answer")
+        # Behind it, on the same connection.
+        assert page.ask("disable", "wheel")["status"] == "ok"
+        assert daemon.state()["state"] == "ESTOP"
+        assert page.ask("clear")["status"] == "ok"

@@ -319,7 +319,7 @@ void LinkServer::reportRefusal(CommandRefusal reason, std::uint64_t id, const li
 
 void LinkServer::request(const link::Request& message, Connection& connection) {
   const auto speaker = connections_.speakerOf(connection, message.client, message.origin);
-  auto outcome = desk_.begin(message, speaker);
+  auto outcome = desk_.begin(message, speaker, monotonicNow());
   if (outcome.estop) {
     sources_.exchange.estop_client.slot() = message.client;
     sources_.exchange.estop_client.publish();

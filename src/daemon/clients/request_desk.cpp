@@ -15,6 +15,7 @@
 #include "daemon/clients/gain_request.hpp"
 #include "daemon/clients/scan_request.hpp"
 #include "daemon/clients/shaft_request.hpp"
+#include "daemon/clients/validity.hpp"
 #include "link/at_end.hpp"
 
 namespace rc10 {
@@ -97,6 +98,12 @@ constexpr std::string_view kAngle = "angle_deg";
   return "unknown reason";
 }
 
+[[nodiscard]] std::string tooLate(Duration waited) {
+  return fmt::format(
+      "the request is {} ms old, since rc10d stood still or was not reached: it was not done; ask again",
+      waited / std::chrono::milliseconds{1});
+}
+
 [[nodiscard]] Right rightFor(Operation operation) {
   switch (operation) {
     case Operation::kClear: return Right::kClear;
@@ -135,7 +142,8 @@ link::Response RequestDesk::respond(const link::Request& request, link::Response
   return response;
 }
 
-RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Speaker& speaker) {
+RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Speaker& speaker,
+                                        MonotonicTime now) {
   const auto operation = operationNamed(request.operation.view());
   Outcome outcome;
   // An e-stop is an e-stop, whatever else the message says, and however often it comes.
@@ -151,6 +159,12 @@ RequestDesk::Outcome RequestDesk::begin(const link::Request& request, const Spea
   }
   if (open != nullptr && !anew) {
     open->connection = speaker.connection;  // a repetition: answered when the first is
+    return outcome;
+  }
+  if (const auto waited = waitedSince(request.received_ns, now); waited > kMaxRequestAge && !anew) {
+    outcome.response = respond(request, link::ResponseStatus::kRefused, tooLate(waited));
+    // Its repetitions are the same request: none acts after this answer.
+    answered_.remember(asker, request, *outcome.response);
     return outcome;
   }
   if (operation == Operation::kDriveSettings) return tellSettings(request);

@@ -43,8 +43,9 @@ class RequestDesk {
     bool estop = false;                      ///< Raise the e-stop flag too: the ring may be full.
     std::string not_permitted;               ///< Cause, if that is the reason of the response.
   };
-  /// finish() tells the speaker's connection back.
-  [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker);
+  /// finish() tells the speaker's connection back. One that is older than kMaxRequestAge is refused, unless
+  /// it stops: rc10d, too, may have stood still.
+  [[nodiscard]] Outcome begin(const link::Request& request, const Speaker& speaker, MonotonicTime now);
 
   /// The simulation has taken the order of Outcome::shaft, and its response is sent.
   void shaftTaken(const link::Request& request, const Speaker& speaker, const link::Response& response);

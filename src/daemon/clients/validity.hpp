@@ -14,6 +14,13 @@ namespace rc10 {
   return std::min(MonotonicTime{Duration{received_ns}}, now);
 }
 
+/// How long a request has waited that was received at `received_ns` (CLOCK_MONOTONIC; 0: not known).
+[[nodiscard]] inline Duration waitedSince(std::int64_t received_ns, MonotonicTime now) noexcept {
+  if (received_ns == 0) return {};
+  // No stamp is from before the start of this clock; the difference would not fit.
+  return now - std::max(receivedAt(received_ns, now), MonotonicTime{});
+}
+
 /// Until when a message acts that was received at `received_ns` (CLOCK_MONOTONIC); nothing if its validity is
 /// out of range. 0 ms: the default.
 [[nodiscard]] inline std::optional<MonotonicTime> deadlineOf(std::int64_t received_ns,

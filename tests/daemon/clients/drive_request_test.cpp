@@ -32,7 +32,7 @@ class DriveRequestTest : public ::testing::Test {
     return request;
   }
   std::string refusal(const link::Request& request) {
-    const auto outcome = desk.begin(request, {.connection = 1});
+    const auto outcome = desk.begin(request, {.connection = 1}, kAnyTime);
     EXPECT_FALSE(outcome.order);
     if (!outcome.response) return "no response";
     EXPECT_EQ(outcome.response->status, ResponseStatus::kRefused);
@@ -55,7 +55,8 @@ class DriveRequestTest : public ::testing::Test {
 };
 
 TEST_F(DriveRequestTest, BecomesAnOrderForOneDrive) {
-  const auto outcome = desk.begin(ask("arm", {{"timeout_ms", 100}, {"save", 1}}), {.connection = 1});
+  const auto outcome =
+      desk.begin(ask("arm", {{"timeout_ms", 100}, {"save", 1}}), {.connection = 1}, kAnyTime);
   ASSERT_TRUE(outcome.order);
   EXPECT_EQ(outcome.order->operation, Operation::kConfigure);
   EXPECT_EQ(outcome.order->motors, MotorSet{0b001});
@@ -68,8 +69,8 @@ TEST_F(DriveRequestTest, BecomesAnOrderForOneDrive) {
 TEST_F(DriveRequestTest, SaysWhetherToStore) {
   EXPECT_THAT(refusal({{"timeout_ms", 100}}), HasSubstr("save"));
   EXPECT_THAT(refusal({{"timeout_ms", 100}, {"save", 2}}), HasSubstr("save"));
-  EXPECT_FALSE(
-      desk.begin(ask("arm", {{"timeout_ms", 100}, {"save", 0}}), {.connection = 1}).order->drive.save);
+  EXPECT_FALSE(desk.begin(ask("arm", {{"timeout_ms", 100}, {"save", 0}}), {.connection = 1}, kAnyTime)
+                   .order->drive.save);
 }
 
 TEST_F(DriveRequestTest, IsRefusedWhenAValueIsNone) {
@@ -98,14 +99,15 @@ TEST_F(DriveRequestTest, ADriveThatStoresAtOnceIsNotWrittenWithout) {
 }
 
 TEST_F(DriveRequestTest, WhoTheDriveIsChangesLastAndOneAtATime) {
-  const auto outcome = desk.begin(ask("arm", {{"id", 5}, {"timeout_ms", 7}, {"save", 1}}), {.connection = 1});
+  const auto outcome =
+      desk.begin(ask("arm", {{"id", 5}, {"timeout_ms", 7}, {"save", 1}}), {.connection = 1}, kAnyTime);
   ASSERT_TRUE(outcome.order);
   EXPECT_EQ(damiaoSetup().settings[outcome.order->drive.values[1].setting].name, "id");
   EXPECT_THAT(refusal({{"id", 5}, {"master_id", 21}, {"save", 1}}), HasSubstr("one change of ids"));
 }
 
 TEST_F(DriveRequestTest, IsAnsweredWithWhatWasDone) {
-  const auto outcome = desk.begin(ask("arm", {{"id", 5}, {"save", 1}}), {.connection = 1});
+  const auto outcome = desk.begin(ask("arm", {{"id", 5}, {"save", 1}}), {.connection = 1}, kAnyTime);
   OrderResult result;
   result.id = outcome.order->id;
   const auto answer = desk.finish(result);
@@ -115,8 +117,8 @@ TEST_F(DriveRequestTest, IsAnsweredWithWhatWasDone) {
 }
 
 TEST_F(DriveRequestTest, IsAnsweredWithWhatCouldNotBeDone) {
-  const auto outcome =
-      desk.begin(ask("arm", {{"timeout_ms", 5}, {"p_max_rad", 10}, {"save", 1}}), {.connection = 1});
+  const auto outcome = desk.begin(ask("arm", {{"timeout_ms", 5}, {"p_max_rad", 10}, {"save", 1}}),
+                                  {.connection = 1}, kAnyTime);
   OrderResult result;
   result.id = outcome.order->id;
   result.motors[0] = Refusal::kNotConfirmed;
@@ -129,7 +131,7 @@ TEST_F(DriveRequestTest, IsAnsweredWithWhatCouldNotBeDone) {
 
 TEST_F(DriveRequestTest, TheSettingsOfADriveAreTold) {
   const auto outcome =
-      desk.begin(linkRequest(100, toString(Operation::kDriveSettings), "arm"), {.connection = 1});
+      desk.begin(linkRequest(100, toString(Operation::kDriveSettings), "arm"), {.connection = 1}, kAnyTime);
   ASSERT_TRUE(outcome.response);
   EXPECT_EQ(outcome.response->status, ResponseStatus::kOk);
   EXPECT_THAT(std::string(outcome.response->message.view()), HasSubstr("master_id 0 to 2046, whole\n"));

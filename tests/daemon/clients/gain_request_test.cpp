@@ -63,7 +63,7 @@ class SetGainsTest : public ::testing::Test {
   }
   /// The answer of the whole daemon, link thread and scheduler.
   link::Response answer(const link::Request& request) {
-    auto outcome = desk.begin(request, {.connection = 1});
+    auto outcome = desk.begin(request, {.connection = 1}, kAnyTime);
     if (outcome.response) return *outcome.response;
     if (!outcome.order || !robot.exchange().orders.push(*outcome.order)) return {};
     OrderResult result;
@@ -179,11 +179,11 @@ TEST_F(SetGainsTest, ARepeatedRequestIsCarriedOutOnce) {
 }
 
 TEST_F(SetGainsTest, OrdersOfOneTickFollowOneAnother) {
-  const auto first =
-      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}}), {.connection = 1});
+  const auto first = desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}}),
+                                {.connection = 1}, kAnyTime);
   const auto second =
       desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.6}, {"velocity.ki", 2.0}}),
-                 {.connection = 1});
+                 {.connection = 1}, kAnyTime);
   robot.exchange().orders.push(*first.order);
   robot.exchange().orders.push(*second.order);
   robot.tick();
@@ -285,7 +285,7 @@ TEST_F(TriedGainsTest, ItIsAskedForByOneAndNotThroughLcm) {
               HasSubstr("restore_at_end: use 1"));
   const auto outcome =
       desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.5}, {kTry, 1.0}}),
-                 {.connection = 1, .way = Speaker::Way::kLcm});
+                 {.connection = 1, .way = Speaker::Way::kLcm}, kAnyTime);
   ASSERT_TRUE(outcome.response);
   EXPECT_THAT(std::string(outcome.response->message.view()),
               HasSubstr("nobody sees the end of an LCM client"));
@@ -296,14 +296,15 @@ TEST_F(TriedGainsTest, ItIsAskedForByOneAndNotThroughLcm) {
 TEST_F(SetGainsTest, AFloodOfThemIsRefused) {
   for (int i = 0; i < 8; ++i) {
     EXPECT_TRUE(desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 0.1 * i}}),
-                           {.connection = 1})
+                           {.connection = 1}, kAnyTime)
                     .order);
   }
-  const auto outcome =
-      desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 1.0}}), {.connection = 1});
+  const auto outcome = desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.kp", 1.0}}),
+                                  {.connection = 1}, kAnyTime);
   ASSERT_TRUE(outcome.response);
   EXPECT_THAT(std::string(outcome.response->message.view()), HasSubstr("wait for the answers"));
-  EXPECT_TRUE(desk.begin(ask("disable", "wheel"), {.connection = 1}).order) << "other requests are taken";
+  EXPECT_TRUE(desk.begin(ask("disable", "wheel"), {.connection = 1}, kAnyTime).order)
+      << "other requests are taken";
 }
 
 TEST_F(SetGainsTest, AMotorThatTurnsGoesOnWithoutABump) {
@@ -313,7 +314,7 @@ TEST_F(SetGainsTest, AMotorThatTurnsGoesOnWithoutABump) {
   const float before = effort();
   const auto outcome =
       desk.begin(ask(toString(Operation::kSetGains), "wheel", {{"velocity.ki", 20.0}, {"velocity.kp", 0.5}}),
-                 {.connection = 1});
+                 {.connection = 1}, kAnyTime);
   robot.exchange().orders.push(*outcome.order);
   turn(60.0, 1);
   EXPECT_NEAR(effort(), before, 0.25F);

@@ -172,6 +172,27 @@ TEST_F(LinkServerTest, ARefusedRequestIsAnsweredAtOnce) {
   EXPECT_FALSE(exchange.estop.load());
 }
 
+TEST_F(LinkServerTest, OfRequestsFromBeforeAPauseOnlyThoseThatStopAreDone) {
+  auto client = join();
+  std::int64_t seq = 0;
+  for (const auto* operation : {"clear", "enable", "disable", "estop"}) {
+    auto request = linkRequest(++seq, operation);
+    request.received_ns = 1;
+    ASSERT_TRUE(client->send(request));
+  }
+  pump();
+  EXPECT_EQ(takeOrder().operation, Operation::kDisable);
+  EXPECT_EQ(takeOrder().operation, Operation::kEstop);
+  EXPECT_EQ(exchange.orders.read_available(), 0U);
+  EXPECT_TRUE(exchange.estop.load());
+  for (int i = 0; i < 2; ++i) {
+    const auto response = client->take<link::Response>();
+    ASSERT_TRUE(response);
+    EXPECT_EQ(response->status, link::ResponseStatus::kRefused);
+    EXPECT_THAT(std::string(response->message.view()), HasSubstr("it was not done; ask again"));
+  }
+}
+
 TEST_F(LinkServerTest, AnEstopRaisesTheFlagEvenWhenTheSchedulerTakesNoOrders) {
   auto client = join();
   while (exchange.orders.push(Order{})) {

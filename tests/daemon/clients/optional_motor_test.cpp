@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 class OptionalMotorTest : public ::testing::Test {
  protected:
   link::Response afterFailureOf(std::size_t motor, std::string_view operation) {
-    const auto outcome =
-        desk.begin(linkRequest(++seq, operation, operation == "zero" ? "spare" : ""), {.connection = 1});
+    const auto outcome = desk.begin(linkRequest(++seq, operation, operation == "zero" ? "spare" : ""),
+                                    {.connection = 1}, kAnyTime);
     OrderResult result;
     result.id = outcome.order.value().id;
     result.motors[motor] = Refusal::kOffline;
@@ -40,7 +40,7 @@ TEST_F(OptionalMotorTest, MayFailToEnableAndIsNamed) {
 }
 
 TEST_F(OptionalMotorTest, IsNoSuccessWhereItAloneIsNamed) {
-  const auto outcome = desk.begin(linkRequest(++seq, "enable", "spare"), {.connection = 1});
+  const auto outcome = desk.begin(linkRequest(++seq, "enable", "spare"), {.connection = 1}, kAnyTime);
   OrderResult result;
   result.id = outcome.order.value().id;
   result.motors[1] = Refusal::kOffline;

@@ -89,7 +89,7 @@ struct Gates {
                            std::string_view client = "pilot") {
     auto request = linkRequest(++seq, operation, target);
     request.client = client;
-    return desk.begin(request, speaker);
+    return desk.begin(request, speaker, kAnyTime);
   }
   bool permits(const Speaker& speaker, std::string_view operation, std::string_view target) {
     return ask(speaker, operation, target).not_permitted.empty();
@@ -265,10 +265,10 @@ TEST(PermissionsTest, NobodyUsesAnothersSession) {
 TEST(PermissionsTest, ARefusalForWantOfARightIsNotRemembered) {
   Gates gates{robot({})};
   const auto request = linkRequest(1, "clear", "left");
-  EXPECT_FALSE(gates.desk.begin(request, {.way = Way::kLcm}).not_permitted.empty());
+  EXPECT_FALSE(gates.desk.begin(request, {.way = Way::kLcm}, kAnyTime).not_permitted.empty());
   Gates granted{robot({clientAt(8, By::kLcmName, "pilot", {Right::kClear})})};
-  EXPECT_FALSE(granted.desk.begin(request, {.way = Way::kLcm}).order);
-  EXPECT_TRUE(granted.desk.begin(request, granted.lcm("pilot")).order);
+  EXPECT_FALSE(granted.desk.begin(request, {.way = Way::kLcm}, kAnyTime).order);
+  EXPECT_TRUE(granted.desk.begin(request, granted.lcm("pilot"), kAnyTime).order);
 }
 
 TEST(PermissionsTest, LockedTuningIsNobodys) {

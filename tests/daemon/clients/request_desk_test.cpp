@@ -25,7 +25,7 @@ constexpr std::uint64_t kConnection = 3;
 class RequestDeskTest : public ::testing::Test {
  protected:
   RequestDesk::Outcome begin(const link::Request& request) {
-    return desk.begin(request, {.connection = kConnection});
+    return desk.begin(request, {.connection = kConnection}, kAnyTime);
   }
   /// The text of a refusal.
   std::string refusal(const link::Request& request) {
@@ -86,8 +86,9 @@ TEST(RequestDeskOfOneMotor, AClearThatNamesItIsNotOfTheWholeRobot) {
   RobotDescription robot = describedRobot({"wheel"});
   Admission admission{robot};
   RequestDesk desk{admission, robot};
-  EXPECT_FALSE(desk.begin(linkRequest(1, "clear", "wheel"), {.connection = kConnection}).order->whole_robot);
-  EXPECT_TRUE(desk.begin(linkRequest(2, "clear"), {.connection = kConnection}).order->whole_robot);
+  EXPECT_FALSE(
+      desk.begin(linkRequest(1, "clear", "wheel"), {.connection = kConnection}, kAnyTime).order->whole_robot);
+  EXPECT_TRUE(desk.begin(linkRequest(2, "clear"), {.connection = kConnection}, kAnyTime).order->whole_robot);
 }
 
 TEST_F(RequestDeskTest, SeveralMotorsAreSeparatedByCommas) {
@@ -335,8 +336,8 @@ TEST_F(RequestDeskTest, ARepetitionGetsTheFirstAnswerAndNoNewOrder) {
 
 TEST_F(RequestDeskTest, ARepetitionWhileTheFirstIsOpenIsAnsweredOnceAndToTheLatestConnection) {
   const auto by = Speaker::Way::kLcm;  // the gateway was started again
-  const auto outcome = desk.begin(linkRequest(1, "enable"), {.connection = 3, .way = by});
-  const auto again = desk.begin(linkRequest(1, "enable"), {.connection = 4, .way = by});
+  const auto outcome = desk.begin(linkRequest(1, "enable"), {.connection = 3, .way = by}, kAnyTime);
+  const auto again = desk.begin(linkRequest(1, "enable"), {.connection = 4, .way = by}, kAnyTime);
   EXPECT_FALSE(again.order);
   EXPECT_FALSE(again.response);
   const auto answer = desk.finish(done(*outcome.order));
@@ -381,7 +382,7 @@ TEST_F(RequestDeskTest, AUserWithManyNamesPushesOutItsOwnAnswers) {
     for (std::int64_t seq = 1; seq <= 60; ++seq) {
       auto other = linkRequest(seq, "dance");
       other.client = "observer" + std::to_string(name);
-      (void)desk.begin(other, {.connection = kConnection + 1, .user = 1});
+      (void)desk.begin(other, {.connection = kConnection + 1, .user = 1}, kAnyTime);
     }
   }
   EXPECT_EQ(begin(asked).order->asked, Asked::kAgain);
@@ -406,11 +407,12 @@ TEST_F(RequestDeskTest, ResultsAndFailuresOfUnknownOrdersAreIgnored) {
 
 TEST_F(RequestDeskTest, AnAnswerBelongsToItsSenderAndOperation) {
   (void)desk.finish(done(*begin(linkRequest(1, "enable")).order));
-  EXPECT_TRUE(desk.begin(linkRequest(1, "enable"), {.connection = kConnection, .user = 1}).order);
+  EXPECT_TRUE(desk.begin(linkRequest(1, "enable"), {.connection = kConnection, .user = 1}, kAnyTime).order);
   EXPECT_TRUE(begin(linkRequest(1, "clear")).order) << "a program that counts from 1 anew";
   // A message by LCM from another computer takes no answer away from a program of this one.
-  (void)desk.finish(done(*desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kNetwork}).order));
-  EXPECT_TRUE(desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kLcm}).order);
+  (void)desk.finish(
+      done(*desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kNetwork}, kAnyTime).order));
+  EXPECT_TRUE(desk.begin(linkRequest(2, "enable"), {.way = Speaker::Way::kLcm}, kAnyTime).order);
 }
 
 TEST_F(RequestDeskTest, WhatStopsIsNeverAnsweredFromMemory) {
@@ -440,6 +442,61 @@ TEST_F(RequestDeskTest, ADisableThatComesOfItselfAtTheEndOfAProgramIsNoSecondOne
   request.seq = 2;
   request.values[0].value = 0.0;
   EXPECT_EQ(begin(request).order->asked, Asked::kAnew);
+}
+
+/// Requests that rc10d finds when it goes on after a pause.
+class LateRequestTest : public RequestDeskTest {
+ protected:
+  static constexpr MonotonicTime kNow{1h};
+
+  RequestDesk::Outcome beginAfter(Duration waited, std::int64_t seq, std::string_view operation) {
+    auto request = linkRequest(seq, operation, "left");
+    request.received_ns = (kNow - waited).time_since_epoch().count();
+    return desk.begin(request, {.connection = kConnection}, kNow);
+  }
+  static std::string textOf(const RequestDesk::Outcome& outcome) {
+    return outcome.response ? std::string(outcome.response->message.view()) : std::string{};
+  }
+};
+
+TEST_F(LateRequestTest, IsRefusedWhateverItAsksForUnlessItStops) {
+  std::int64_t seq = 0;
+  for (const auto* word : kOperationWords) {
+    const auto in_time = beginAfter(kMaxRequestAge, ++seq, word);
+    EXPECT_THAT(textOf(in_time), ::testing::Not(HasSubstr("ms old"))) << word;
+    const auto late = beginAfter(30s, ++seq, word);
+    if (stops(*operationNamed(word))) {
+      ASSERT_TRUE(late.order) << word;
+      EXPECT_EQ(late.estop, late.order->operation == Operation::kEstop);
+      continue;
+    }
+    EXPECT_FALSE(late.order || late.shaft) << word;
+    ASSERT_TRUE(late.response) << word;
+    EXPECT_EQ(late.response->status, ResponseStatus::kRefused);
+    EXPECT_EQ(textOf(late),
+              "the request is 30000 ms old, since rc10d stood still or was not reached: it was not done; ask "
+              "again");
+  }
+}
+
+TEST_F(LateRequestTest, ItsRepetitionDoesNothingEitherButAnotherRequestDoes) {
+  EXPECT_THAT(textOf(beginAfter(kMaxRequestAge + 1ns, 1, "clear")), HasSubstr("1000 ms old"));
+  const auto again = beginAfter(0ns, 1, "clear");
+  EXPECT_FALSE(again.order);
+  EXPECT_THAT(textOf(again), HasSubstr("1000 ms old"));
+  EXPECT_TRUE(beginAfter(0ns, 2, "clear").order);
+}
+
+TEST_F(LateRequestTest, OneThatWasDoneBeforeThePauseIsAnsweredAsThen) {
+  (void)desk.finish(done(*beginAfter(0ns, 1, "enable").order));
+  EXPECT_EQ(textOf(beginAfter(30s, 1, "enable")), "enable: 1 of 1 motors");
+}
+
+TEST_F(LateRequestTest, AStampThatCannotBeIsJudgedToo) {
+  EXPECT_TRUE(beginAfter(-1h, 1, "enable").order) << "the future counts as now";
+  auto request = linkRequest(2, "enable", "left");
+  request.received_ns = std::numeric_limits<std::int64_t>::min();
+  EXPECT_FALSE(desk.begin(request, {.connection = kConnection}, kNow).order);
 }
 
 TEST_F(RequestDeskTest, AnswersAreRememberedForAWhileOnly) {

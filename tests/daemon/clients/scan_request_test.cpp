@@ -99,7 +99,7 @@ class ScanRights : public ::testing::Test {
     RequestDesk desk{admission, robot};
     Speaker anna{.user = 1000};
     anna.grants = admission.permissions().ofUser(1000, {});
-    return desk.begin(scanOf(bus), anna).not_permitted;
+    return desk.begin(scanOf(bus), anna, kAnyTime).not_permitted;
   }
 
   RobotDescription robot = described();

@@ -162,12 +162,12 @@ class ShaftDesk : public testing::Test {
 
 TEST_F(ShaftDesk, ARequestThatWasTakenIsNotTakenAgain) {
   const auto request = handOf({{"by_deg", 90}});
-  const auto first = desk.begin(request, speaker);
+  const auto first = desk.begin(request, speaker, kAnyTime);
   ASSERT_TRUE(first.shaft);
   EXPECT_EQ(first.shaft->response.status, link::ResponseStatus::kOk);
   EXPECT_FALSE(first.order);
   desk.shaftTaken(request, speaker, first.shaft->response);
-  const auto again = desk.begin(request, speaker);
+  const auto again = desk.begin(request, speaker, kAnyTime);
   EXPECT_FALSE(again.shaft);
   ASSERT_TRUE(again.response);
   EXPECT_EQ(again.response->message.view(), "hand: turns right");
@@ -175,12 +175,12 @@ TEST_F(ShaftDesk, ARequestThatWasTakenIsNotTakenAgain) {
 
 TEST_F(ShaftDesk, ARequestThatFoundNoRoomIsTriedAgain) {
   const auto request = handOf({{"by_deg", 90}});
-  ASSERT_TRUE(desk.begin(request, speaker).shaft);
-  EXPECT_TRUE(desk.begin(request, speaker).shaft);
+  ASSERT_TRUE(desk.begin(request, speaker, kAnyTime).shaft);
+  EXPECT_TRUE(desk.begin(request, speaker, kAnyTime).shaft);
 }
 
 TEST_F(ShaftDesk, AMotorWithoutASimulatedDriveIsRefused) {
-  const auto outcome = desk.begin(handOf({{"by_deg", 90}}, "yaw"), speaker);
+  const auto outcome = desk.begin(handOf({{"by_deg", 90}}, "yaw"), speaker, kAnyTime);
   EXPECT_FALSE(outcome.shaft);
   ASSERT_TRUE(outcome.response);
   EXPECT_EQ(outcome.response->status, link::ResponseStatus::kRefused);
