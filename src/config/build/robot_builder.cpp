@@ -67,7 +67,7 @@ class RobotBuilder {
     checkModeInput(top_, robot_, problems_);
     robot_.groups = buildGroups(top_, robot_.buses, problems_);
     robot_.modules = buildModules(top_, robot_.buses, problems_);
-    addImpliedGroups(robot_);
+    addImpliedGroups(robot_, problems_);
     buildClients(top_, robot_, problems_);
     return std::move(robot_);
   }

@@ -157,9 +157,15 @@ bool Axis::losesReference(const Tick& tick) noexcept {
   losses_ = feedback.losses;
   if (lost && needsReference(motor_.target().mode)) {
     dropTarget();
-    beginTimeoutFallback(StopCause::kReference, tick);
+    beginTimeoutFallback({StopCause::kReference}, tick);
   }
   return lost;
+}
+
+void Axis::endPlace(const Stop& why, const Tick& tick) noexcept {
+  if (status_ != MotorStatus::kActive || !needsReference(motor_.target().mode)) return;
+  dropTarget();
+  beginTimeoutFallback(why, tick);
 }
 
 // After a clear request an old one is ignored until the request can have taken effect.
@@ -256,7 +262,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
   const bool coasts = motor_.target().mode == ControlMode::kCoast;
   dropTarget();
   if (coasts) return false;
-  beginTimeoutFallback(StopCause::kTimeout, tick);
+  beginTimeoutFallback({StopCause::kTimeout}, tick);
   return true;
 }
 
@@ -509,8 +515,8 @@ void Axis::dropTarget() noexcept {
   lease_.release();
 }
 
-void Axis::beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept {
-  stop_ = {cause};
+void Axis::beginTimeoutFallback(const Stop& why, const Tick& tick) noexcept {
+  stop_ = why;
   beginFallback(entry_.fallback.on_timeout, Fallback::Until::kEnded, false, tick);
 }
 

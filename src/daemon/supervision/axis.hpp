@@ -83,6 +83,8 @@ class Axis {
   [[nodiscard]] RestCheck::Verdict checkRest(const Tick& tick) noexcept;
   /// Another controller commands its drive: fault() from now on. False: it is not there, or in FAULT already.
   [[nodiscard]] bool yields() noexcept;
+  /// A member of its group lost its reference: an angle that it follows ends as by a timeout.
+  void endPlace(const Stop& why, const Tick& tick) noexcept;
   /// The command in force has lapsed: its fallback has begun.
   [[nodiscard]] bool lapses(const Tick& tick) noexcept;
   /// Tells the motor what kind of frame its drive gets, and the target as it is shaped.
@@ -175,7 +177,7 @@ class Axis {
   [[nodiscard]] bool stood() const noexcept;
   [[nodiscard]] std::optional<SkipReason> whyNotNow(const Target& target) const noexcept;
   void dropTarget() noexcept;
-  void beginTimeoutFallback(StopCause cause, const Tick& tick) noexcept;
+  void beginTimeoutFallback(const Stop& why, const Tick& tick) noexcept;
   void beginFallback(FallbackAction action, Fallback::Until until, bool estop, const Tick& tick) noexcept;
 
   const Robot::MotorEntry& entry_;

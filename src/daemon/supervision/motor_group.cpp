@@ -31,6 +31,15 @@ MotorSet MotorGroup::held(const std::vector<Axis>& axes) const noexcept {
   return held;
 }
 
+MotorSet MotorGroup::withoutPlace(const std::vector<Axis>& axes) const noexcept {
+  MotorSet without = without_place;
+  for (const auto motor : motors) {
+    const auto& axis = axes[motor];
+    if (axis.status() != MotorStatus::kActive || axis.motor().feedback().zeroed) without.reset(motor);
+  }
+  return without;
+}
+
 bool MotorGroup::waits(const std::vector<Axis>& axes) const noexcept {
   return together && std::any_of(motors.begin(), motors.end(), [&](std::size_t motor) {
            return required.test(motor) && axes[motor].status() != MotorStatus::kActive;
@@ -73,6 +82,7 @@ void MotorGroup::forgetLeaving() noexcept {
   disabled_on_request = false;
   refused.reset();
   disable_asked = false;
+  lost_place.reset();
   first_disable.reset();
   left.reset();
   let_go.reset();

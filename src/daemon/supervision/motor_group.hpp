@@ -24,6 +24,8 @@ struct MotorGroup {
   [[nodiscard]] MotorSet missing(const std::vector<Axis>& axes) const noexcept;
   /// Members that are READY and held since their disable.
   [[nodiscard]] MotorSet held(const std::vector<Axis>& axes) const noexcept;
+  /// Members of without_place that are still ACTIVE and have no reference.
+  [[nodiscard]] MotorSet withoutPlace(const std::vector<Axis>& axes) const noexcept;
   /// It acts together, and not all of it is ACTIVE.
   [[nodiscard]] bool waits(const std::vector<Axis>& axes) const noexcept;
   /// A member was ENABLING or ACTIVE before `event`, and is not now.
@@ -47,7 +49,8 @@ struct MotorGroup {
   bool disabled_on_request = false;  ///< Some of `disabled` by one that somebody asked for.
   /// Request that named some of rests_with_it, where the group acts together.
   std::optional<std::uint64_t> first_disable;
-  MotorSet left;  ///< Members that were on and have been disabled.
+  MotorSet lost_place;  ///< Required members that followed a place and have lost their reference.
+  MotorSet left;        ///< Members that were on and have been disabled.
   std::optional<std::uint64_t>
       let_go;  ///< Request that let go of those that rested already: once, by all it names.
   // Until a request changes it.
@@ -55,6 +58,7 @@ struct MotorGroup {
   MotorSet rearm;          ///< To be enabled again by itself; empty: none.
   // From tick to tick.
   MotorSet gone;            ///< missing() of the last tick.
+  MotorSet without_place;   ///< Of lost_place, until they have a reference again: no member follows a place.
   MonotonicTime stopped{};  ///< Last time at which it was.
   MonotonicTime moved{};    ///< Last time at which a member moved or was missing.
 };

@@ -50,7 +50,11 @@ void Supervisor::watch(std::size_t motor, const Axis::Since& since, const Tick& 
   } else if (axis.lost(tick)) {
     transition(motor, MotorEvent::kFeedbackLost, tick);
   }
-  if (axis.losesReference(tick)) report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
+  const bool by_place = needsReference(axis.motor().target().mode);
+  if (axis.losesReference(tick)) {
+    report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
+    if (by_place) noteLostPlace(motor);
+  }
   if (const auto native_code = axis.complains(tick))
     fault(motor, static_cast<std::int32_t>(*native_code), tick);
   if (axis.status() == MotorStatus::kEnabling) {

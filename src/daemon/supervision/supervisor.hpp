@@ -103,6 +103,7 @@ class Supervisor {
   [[nodiscard]] bool follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                             const Command& command, const Tick& tick) noexcept;
   void letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept;
+  [[nodiscard]] MotorSet heldBackBy(const Command& command) const noexcept;
   [[nodiscard]] bool waits(const Command::Setpoint& setpoint) const noexcept;
   [[nodiscard]] bool followsThePast(const Command::Setpoint& setpoint, const Command& command) const noexcept;
   [[nodiscard]] std::optional<SkipReason> whySkipped(const Command::Setpoint& setpoint) const noexcept;
@@ -150,6 +151,9 @@ class Supervisor {
   }
   /// Its group acts together, and not all of it is ACTIVE.
   [[nodiscard]] bool waitsForGroup(std::size_t motor) const noexcept;
+  [[nodiscard]] bool groupLostPlace(std::size_t motor) const noexcept;
+  void noteLostPlace(std::size_t motor) noexcept;
+  void endPlacesOf(MotorGroup& group, const Tick& tick) noexcept;
   [[nodiscard]] bool clearEstop(const Order& order, OrderResult& result, const Tick& tick) noexcept;
   void settle(std::size_t motor, Refusal outcome) noexcept;
   void configure(const Order& order, const Tick& tick) noexcept;

@@ -57,8 +57,31 @@ bool Supervisor::waitsForGroup(std::size_t motor) const noexcept {
   return group != nullptr && alone_ != motor && group->waits(axes_);
 }
 
+bool Supervisor::groupLostPlace(std::size_t motor) const noexcept {
+  const auto* group = groupOf(motor);
+  return group != nullptr && group->together && alone_ != motor && group->without_place.any();
+}
+
+// The other motors of one thing would drive on to a place that this one does not know any more.
+void Supervisor::noteLostPlace(std::size_t motor) noexcept {
+  auto* group = groupOf(motor);
+  if (group == nullptr || !group->together || alone_ == motor || !group->required.test(motor)) return;
+  group->lost_place.set(motor);
+}
+
+void Supervisor::endPlacesOf(MotorGroup& group, const Tick& tick) noexcept {
+  group.without_place = group.withoutPlace(axes_) | group.lost_place;
+  if (group.lost_place.none()) return;
+  const auto source = static_cast<std::size_t>(firstOf(group.lost_place));
+  for (const auto motor : group.motors) {
+    if (motor != alone_ && !group.lost_place.test(motor))
+      axes_[motor].endPlace({StopCause::kGroup, link::Name{robot_.motors()[source].motor->name()}}, tick);
+  }
+}
+
 void Supervisor::watchGroup(std::size_t index, const Tick& tick) noexcept {
   auto& group = groups_[index];
+  endPlacesOf(group, tick);
   const auto gone = group.missing(axes_);
   const bool alone = alone_ && groupOf(*alone_) == &group;
   // A hold after a disable ends with a member that is lost now, not with one that was missing already.

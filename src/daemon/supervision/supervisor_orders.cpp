@@ -27,8 +27,12 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   if (link_.estop_datagram.exchange(false, std::memory_order_acquire))
     estop({StopCause::kRequest, link_.estop_datagram_client.read()}, tick);
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.
-  for (auto n = link_.orders.read_available(); n > 0; --n) {
-    link_.orders.consume_one([&](const Order& order) { carryOut(order, tick); });
+  std::size_t ordered = 0;
+  for (auto n = link_.orders.read_available(); n > 0 && ordered < kOrderedMotorsPerTick; --n) {
+    link_.orders.consume_one([&](const Order& order) {
+      ordered += std::max<std::size_t>(order.motors.count(), 1);
+      carryOut(order, tick);
+    });
   }
   for (auto n = link_.refusals.read_available(); n > 0; --n) {
     link_.refusals.consume_one([&](const Event& refusal) {
@@ -110,17 +114,44 @@ void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
     if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kNotOwner);
     return;
   }
+  const MotorSet held_back = heldBackBy(command);
   std::bitset<kMaxMotors> skipped;
   for (std::size_t i = 0; i < command.count; ++i) {
-    skipped.set(i, !follow(command.setpoints[i], sender, command, tick));
+    const auto& setpoint = command.setpoints[i];
+    if (held_back.test(setpoint.motor) && setpoint.target.mode != ControlMode::kCoast) {
+      skip(setpoint, whySkipped(setpoint).value_or(SkipReason::kGroup), tick);
+      skipped.set(i);
+    } else {
+      skipped.set(i, !follow(setpoint, sender, command, tick));
+    }
   }
   if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kApplied, skipped);
 }
 
+// Where one of the motors that move one thing cannot follow this message, none of them does: half of it would
+// rack what they move.
+MotorSet Supervisor::heldBackBy(const Command& command) const noexcept {
+  MotorSet held_back;
+  if (groups_.empty()) return held_back;  // most often
+  for (std::size_t i = 0; i < command.count; ++i) {
+    const auto& setpoint = command.setpoints[i];
+    const auto* group = groupOf(setpoint.motor);
+    if (group == nullptr || !group->together || !group->required.test(setpoint.motor)) continue;
+    if (alone_ && groupOf(*alone_) == group) continue;
+    if (!whySkipped(setpoint) && !followsThePast(setpoint, command)) continue;
+    for (const auto member : group->motors) held_back.set(member);
+  }
+  return held_back;
+}
+
+// Before all of a group are ACTIVE a COAST would let go of those that are, of what the others hold.
 bool Supervisor::waits(const Command::Setpoint& setpoint) const noexcept {
   if (groups_.empty()) return false;  // most often
-  return setpoint.target.mode != ControlMode::kCoast &&
-         axes_[setpoint.motor].status() == MotorStatus::kActive && waitsForGroup(setpoint.motor);
+  const auto& axis = axes_[setpoint.motor];
+  if (axis.status() != MotorStatus::kActive) return false;
+  const bool lets_go = setpoint.target.mode == ControlMode::kCoast;
+  if (waitsForGroup(setpoint.motor)) return !lets_go || axis.fallbackActs();
+  return needsReference(setpoint.target.mode) && groupLostPlace(setpoint.motor);
 }
 
 std::optional<SkipReason> Supervisor::whySkipped(const Command::Setpoint& setpoint) const noexcept {

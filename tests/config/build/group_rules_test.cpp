@@ -8,6 +8,7 @@ namespace rc10::test::group_rules_test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using namespace std::chrono_literals;
 
@@ -55,13 +56,22 @@ TEST(GroupRules, AChassisAndAPairAreGroups) {
 
 TEST(GroupRules, ADeclaredGroupWinsOverTheOneOfAModule) {
   const auto loaded = parseRobotConfig(
-      chassisOf("groups:\n  - {name: mine, motors: [left, lift_left, lift_right], together: true}\n"),
+      chassisOf("groups:\n  - {name: mine, motors: [left, right, lift_left, lift_right], together: true}\n"),
       "hero.yaml");
   ASSERT_TRUE(loaded) << loaded.errorText();
-  ASSERT_EQ(loaded.config->groups.size(), 1U) << "one wheel is left, and that is no group";
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  ASSERT_EQ(loaded.config->groups.size(), 1U);
   EXPECT_FALSE(loaded.config->groups[0].implied);
   EXPECT_TRUE(loaded.config->groups[0].together);
   EXPECT_EQ(loaded.config->groups[0].on_return, GroupConfig::Return::kRequest);
+}
+
+TEST(GroupRules, AGroupWithSomeOfAPairIsRefusedAndWithSomeOfAChassisIsNamed) {
+  EXPECT_THAT(errorsOf(chassisOf("groups:\n  - {name: mine, motors: [left, lift_left]}\n")),
+              ElementsAre(HasSubstr("group mine has only some of its motors")));
+  EXPECT_THAT(
+      warningsOf(chassisOf("groups:\n  - {name: mine, motors: [left, lift_left, lift_right]}\n")),
+      ElementsAre(HasSubstr("put all of them into it, or none"), HasSubstr("give it together: true")));
 }
 
 TEST(GroupRules, EveryMistakeIsNamed) {

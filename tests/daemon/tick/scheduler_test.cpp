@@ -290,6 +290,19 @@ TEST_F(SchedulerTest, ATickAppliesABoundedNumberOfSetpoints) {
   EXPECT_EQ(ring.read_available(), 0U) << "nothing is lost";
 }
 
+TEST_F(SchedulerTest, ATickCarriesOutRequestsForABoundedNumberOfMotors) {
+  Order order;
+  order.operation = Operation::kDisable;
+  order.motors.set();
+  auto& ring = robot.exchange().orders;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(ring.push(order));
+  robot.tick();
+  EXPECT_EQ(ring.read_available(), 5 - kOrderedMotorsPerTick / kMaxMotors);
+  robot.tick();
+  robot.tick();
+  EXPECT_EQ(ring.read_available(), 0U) << "nothing is lost";
+}
+
 TEST_F(SchedulerTest, ASilentMotorGoesOfflineAndMustBeEnabledAgain) {
   enableAll();
   robot.hold(kLeft, kVelocity120, 100);
