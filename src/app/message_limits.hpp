@@ -18,5 +18,7 @@ inline constexpr Duration kDefaultValidity = std::chrono::milliseconds{50};
 /// A request that waited longer is refused: nobody expects an `enable` any more that was sent long ago. One
 /// that stops motors is carried out however long it waited.
 inline constexpr Duration kMaxRequestAge = std::chrono::seconds{1};
+/// Validity of an end: too short for a stream, it lets lapse what its sender said before, and begins nothing.
+inline constexpr std::chrono::milliseconds kEndValidity{1};
 
 }  // namespace rc10

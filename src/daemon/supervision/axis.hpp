@@ -123,11 +123,12 @@ class Axis {
   }
 
   /// Whether a command of `sender` would be taken.
-  [[nodiscard]] bool allows(const Lease::Holder& sender, MonotonicTime now) const noexcept {
-    return lease_.allows(sender, now);
+  [[nodiscard]] bool allows(const Lease::Holder& sender, const Lease::Term& term,
+                            MonotonicTime now) const noexcept {
+    return lease_.allows(sender, term, now);
   }
   [[nodiscard]] bool obeys(const Lease::Holder& sender, MonotonicTime now) const noexcept {
-    return status_ == MotorStatus::kActive && allows(sender, now);
+    return status_ == MotorStatus::kActive && lease_.allows(sender, now);
   }
   /// Said before the motor was enabled: it does not act.
   [[nodiscard]] bool predatesEnabling(MonotonicTime said) const noexcept { return said < enabling_since_; }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "app/message_limits.hpp"
 #include "app/time.hpp"
 #include "link/link_protocol.hpp"
 
@@ -17,6 +18,15 @@ class Lease {
     std::int32_t priority = 0;
   };
 
+  /// From when this host received the command until it lapses.
+  struct Term {
+    MonotonicTime received{};
+    MonotonicTime until{};
+
+    /// The last word of a program that leaves: what it said before, for an instant.
+    [[nodiscard]] bool ends() const noexcept { return until - received <= kEndValidity; }
+  };
+
   /// Somebody has taken it, though it may have lapsed since.
   [[nodiscard]] bool taken() const noexcept { return taken_; }
   [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < term_.until; }
@@ -27,12 +37,11 @@ class Lease {
   [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
     return !held(now) || isHolder(other) || other.priority > holder_.priority;
   }
-
-  /// From when this host received the command until it lapses.
-  struct Term {
-    MonotonicTime received{};
-    MonotonicTime until{};
-  };
+  /// An end begins nothing: of a sender that does not hold it, it could bring back what was displaced or
+  /// refused, for nobody.
+  [[nodiscard]] bool allows(const Holder& other, const Term& term, MonotonicTime now) const noexcept {
+    return term.ends() ? held(now) && isHolder(other) : allows(other, now);
+  }
 
   void take(const Holder& holder, const Term& term) noexcept {
     holder_ = holder;

@@ -12,6 +12,10 @@ namespace {
 // time of reduced mode begins anew each time.
 constexpr Duration kSteadilyClosed = std::chrono::milliseconds{500};
 
+[[nodiscard]] Lease::Term termOf(const Command& command) noexcept {
+  return {command.received, command.deadline};
+}
+
 }  // namespace
 
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
@@ -84,11 +88,14 @@ void Supervisor::answer(const OrderResult& result) noexcept {
   if (result.id != Order::kFromModule) link_.results.push(result);
 }
 
-// A message acts whole or not at all: one motor that is held by another client is enough.
+// A message acts whole or not at all: one motor that is held by another client is enough. An end acts for
+// those that its sender holds.
 bool Supervisor::mayCommand(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept {
+  const auto term = termOf(command);
+  if (term.ends()) return true;
   for (std::size_t i = 0; i < command.count; ++i) {
     const auto motor = command.setpoints[i].motor;
-    if (axes_[motor].allows(sender, tick.now)) continue;
+    if (axes_[motor].allows(sender, term, tick.now)) continue;
     ++refused_commands_;
     if (tick.now - last_refusal_report_ >= kReportInterval) {
       last_refusal_report_ = tick.now;
@@ -160,7 +167,11 @@ std::optional<SkipReason> Supervisor::whySkipped(const Command::Setpoint& setpoi
 
 bool Supervisor::follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                         const Command& command, const Tick& tick) noexcept {
-  const Lease::Term term{command.received, command.deadline};
+  const auto term = termOf(command);
+  if (term.ends() && !axes_[setpoint.motor].allows(sender, term, tick.now)) {
+    ++skipped_setpoints_;
+    return false;
+  }
   const auto reason = waits(setpoint)
                           ? SkipReason::kGroup
                           : axes_[setpoint.motor].follow(setpoint.target, command.said, sender, term);

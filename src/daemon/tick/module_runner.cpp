@@ -69,9 +69,10 @@ void ModuleRunner::receive(const Tick& tick) noexcept {
 void ModuleRunner::take(const SignalMessage& message, MonotonicTime said, const Tick& tick) noexcept {
   auto& control = controls_[message.module];
   const Lease::Holder sender{message.client, message.session, message.priority};
+  const Lease::Term term{message.received, message.deadline};
   if (message.session != kModuleSession) supervisor_.hearClient(tick.now);
   auto verdict = blackbox::Verdict::kApplied;
-  if (!control.lease.allows(sender, tick.now)) verdict = blackbox::Verdict::kNotOwner;
+  if (!control.lease.allows(sender, term, tick.now)) verdict = blackbox::Verdict::kNotOwner;
   if (tick.now >= message.deadline) verdict = blackbox::Verdict::kExpired;
   if (recorder_ != nullptr) recorder_->signals(message, verdict);
   if (verdict != blackbox::Verdict::kApplied) {
@@ -84,8 +85,8 @@ void ModuleRunner::take(const SignalMessage& message, MonotonicTime said, const 
   if (sender.session != control.sender.session || sender.client.view() != control.sender.client.view())
     module.changeSender();
   control.sender = sender;
-  control.said = said;
-  control.lease.take(sender, {message.received, message.deadline});
+  if (!term.ends()) control.said = said;
+  control.lease.take(sender, term);
   module.setInputs(message.values);
 }
 

@@ -5,7 +5,6 @@
 
 #include "app/message_limits.hpp"
 #include "robot_client/session/event_codes.hpp"
-#include "robot_client/session/outgoing.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -34,7 +33,7 @@ std::map<std::string, InputsInForce::Given> InputsInForce::takeAll(MonotonicTime
   std::map<std::string, Given> all;
   for (auto& [module, timed] : by_module_) {
     if (now >= timed.until) continue;
-    timed.given.options.validity = kEnded;
+    timed.given.options.validity = kEndValidity;
     all.emplace(module, std::move(timed.given));
   }
   by_module_.clear();

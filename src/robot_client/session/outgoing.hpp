@@ -13,9 +13,6 @@
 namespace rc10 {
 inline namespace robot_client {
 
-/// The shortest validity: what was sent before, said again with it, ends in the next ticks.
-inline constexpr std::chrono::milliseconds kEnded{1};
-
 /// "left,right": how a request names its motors.
 [[nodiscard]] std::string joined(const std::vector<std::string>& names);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/message_limits.hpp"
 #include "robot_client/session/obstacle.hpp"
 
 namespace rc10 {
@@ -149,7 +150,7 @@ void SessionTargets::letGo(MonotonicTime now, News& news) {
   // Those that are disabled do their on_disable instead.
   for (const auto& message : held) {
     for (const auto& order : message) {
-      if (!core_.leaving.disables(order.motor)) (void)core_.outgoing.command({order}, kEnded);
+      if (!core_.leaving.disables(order.motor)) (void)core_.outgoing.command({order}, kEndValidity);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include "daemon/supervision/lease.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 
 #include <gtest/gtest.h>
 
@@ -32,6 +33,16 @@ class LeaseTest : public ::testing::Test {
     (void)robot.events();
   }
   float commanded(std::size_t motor) { return robot.motor(motor).command_value; }
+  /// Last word of a client that leaves; in the middle of a period, so that it is still valid in the tick.
+  void end(const char* client, int priority, std::initializer_list<Command::Setpoint> setpoints) {
+    Command command;
+    command.client = client;
+    command.priority = priority;
+    command.received = command.said = robot.now() + 500us;
+    command.deadline = command.received + 1ms;
+    for (const auto& setpoint : setpoints) command.setpoints[command.count++] = setpoint;
+    ASSERT_TRUE(robot.exchange().commands.push(command));
+  }
   std::size_t reports() {
     const auto events = robot.events();
     return static_cast<std::size_t>(std::count_if(
@@ -111,6 +122,93 @@ TEST_F(LeaseTest, AMessageIsRefusedWholeForOneMotorThatIsHeld) {
   robot.tick();
   EXPECT_EQ(commanded(kLeft), 0.0F);
   EXPECT_EQ(commanded(kRight), 1.0F);
+}
+
+TEST_F(LeaseTest, AClientThatLeavesEndsItsTarget) {
+  robot.commandAs("planner", 0, kLeft, current(1.0), 1000ms);
+  robot.run(20);
+  end("planner", 0, {{kLeft, current(1.0)}});
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 1.0F);
+  robot.tick();
+  EXPECT_EQ(commanded(kLeft), 0.0F);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "");
+}
+
+TEST_F(LeaseTest, AClientThatLeavesEndsWhatItHoldsThoughItHasLostAnotherMotor) {
+  for (const auto motor : {kLeft, kRight}) robot.commandAs("planner", 0, motor, current(1.0), 1000ms);
+  robot.run(20);
+  robot.commandAs("remote", 5, kLeft, current(-0.5), 1000ms);
+  robot.run(20);
+  end("planner", 0, {{kLeft, current(1.0)}, {kRight, current(1.0)}});
+  robot.run(2);
+  EXPECT_EQ(commanded(kLeft), -0.5F);
+  EXPECT_EQ(commanded(kRight), 0.0F);
+  EXPECT_EQ(reports(), 0U) << "it asks for nothing";
+}
+
+TEST_F(LeaseTest, ATargetThatWasDisplacedDoesNotComeBackWhenItsClientLeaves) {
+  robot.commandAs("planner", 0, kLeft, current(1.0), 1000ms);
+  robot.run(20);
+  robot.commandAs("remote", 5, kLeft, current(-0.5));
+  robot.run(60);
+  end("planner", 0, {{kLeft, current(1.0)}});
+  for (int i = 0; i < 5; ++i) {
+    robot.tick();
+    ASSERT_EQ(commanded(kLeft), 0.0F) << "tick " << i;
+    ASSERT_EQ(robot.motor(kLeft).owner.view(), "");
+  }
+  EXPECT_GT(robot.snapshot().skipped_setpoints, 0U);
+}
+
+TEST_F(LeaseTest, AClientThatLeavesDisplacesNobodyWhateverItsPriority) {
+  robot.commandAs("planner", 0, kLeft, current(1.0), 1000ms);
+  robot.run(20);
+  end("boss", 20, {{kLeft, current(-1.0)}});
+  robot.run(5);
+  EXPECT_EQ(commanded(kLeft), 1.0F);
+  EXPECT_EQ(robot.motor(kLeft).owner.view(), "planner");
+}
+
+// A hold that began anew would be at another place.
+TEST(LeaseOfAHeldMotor, AClientThatLeavesDoesNotEndWhatHoldsIt) {
+  auto config = twoWheelsAndYaw();
+  config.buses[0].motors[kLeft].fallback.on_timeout = FallbackAction::kHold;
+  for (const auto& last : {current(1.0), Target{}}) {
+    VirtualRobot robot{config};
+    robot.run(5);
+    robot.order(Operation::kEnable);
+    robot.commandAs("remote", 5, kLeft, current(0.1));
+    robot.run(500);
+    ASSERT_EQ(robot.motor(kLeft).acting, Acting::kHold);
+    Command end;
+    end.client = "planner";
+    end.received = end.said = robot.now() + 500us;
+    end.deadline = end.received + 1ms;
+    end.count = 1;
+    end.setpoints[0] = {kLeft, last};
+    ASSERT_TRUE(robot.exchange().commands.push(end));
+    for (int i = 0; i < 20; ++i) {
+      robot.tick();
+      ASSERT_EQ(robot.motor(kLeft).acting, Acting::kHold) << "tick " << i;
+    }
+  }
+}
+
+TEST(Lease, AnEndIsTakenFromItsHolderAlone) {
+  const MonotonicTime now{10s};
+  const auto allowed = [&](Duration validity, const Lease::Holder& sender, MonotonicTime at) {
+    Lease lease;
+    lease.take(planner(7, 0), {now - 10ms, now + 50ms});
+    return lease.allows(sender, {at, at + validity}, at);
+  };
+  EXPECT_TRUE(allowed(1ms, planner(7, -5), now));
+  EXPECT_FALSE(allowed(1ms, planner(8, 9), now)) << "a higher priority";
+  EXPECT_FALSE(allowed(1ms, planner(7, 0), now + 50ms)) << "it has lapsed";
+  EXPECT_FALSE(allowed(1ms, planner(8, 0), now + 50ms));
+  EXPECT_TRUE(allowed(2ms, planner(8, 9), now)) << "of a stream";
+  EXPECT_TRUE(allowed(2ms, planner(7, 0), now + 50ms));
+  EXPECT_FALSE(Lease{}.allows(planner(7, 0), {now, now + 1ms}, now)) << "nobody has said anything";
 }
 
 TEST_F(LeaseTest, AnotherSessionUnderTheNameIsAnotherClient) {

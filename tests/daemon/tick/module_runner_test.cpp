@@ -163,16 +163,6 @@ TEST_F(ModuleRunnerTest, AMessageThatIsTooOldEndsWhatItsClientSaidBefore) {
   EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
 }
 
-// Message of the client library when its program leaves.
-TEST_F(ModuleRunnerTest, TheSameInputsForAMillisecondEndThoseBefore) {
-  const ScriptedType type;
-  startFor("planner", type);
-  signal("planner", 0, 12.0, 1ms);
-  robot_->run(2);
-  EXPECT_TRUE(std::isnan(seen()));
-  EXPECT_EQ(robot_->snapshot().modules[0].owner.view(), "");
-}
-
 TEST_F(ModuleRunnerTest, AModuleGivesALaterOneItsInputInTheSameTick) {
   double value = kNoSignal;
   const ScriptedType remote{[&](const Tick&, ModuleRobot& robot) {

@@ -69,17 +69,20 @@ class ModuleRunnerTest : public ::testing::Test {
     robot_->run(10);
   }
   void enable() { (void)robot_->order(Operation::kEnable); }
-  void signal(const char* client, int priority, double value, Duration validity = 50ms) {
+  void signal(const char* client, int priority, double value, Duration validity = 50ms, Duration later = {}) {
     SignalMessage message;
     message.client = client;
     message.session = 7;
     message.priority = priority;
-    message.received = robot_->now();
-    message.deadline = robot_->now() + validity;
+    message.received = robot_->now() + later;
+    message.deadline = message.received + validity;
     message.values.fill(kNoSignal);
     message.values[0] = value;
     ASSERT_TRUE(robot_->exchange().signals.push(message));
   }
+  /// Message of the client library when its program leaves; in the middle of a period, so that it is still
+  /// valid in the tick.
+  void end(const char* client, int priority, double value) { signal(client, priority, value, 1ms, 500us); }
   /// One module, to which this client gives 12 for a second.
   void startFor(const char* client, const ModuleType& type) {
     start({{&type, 0}});
