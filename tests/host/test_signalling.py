@@ -39,6 +39,21 @@ def stands_without_torque(motor: Motor) -> bool:
 
 
 @contextlib.contextmanager
+def copy_as(daemon: Daemon, copy: str) -> Iterator[None]:
+    """What rc10ctl sees of the file with which the robot started."""
+    path = daemon.run_dir / "host.config"
+    text = path.read_text()
+    if copy == "not readable":
+        path.unlink()
+    elif copy == "with a module of another program":
+        path.write_text(text.replace("synchronised_pair", "own_pair"))
+    try:
+        yield
+    finally:
+        path.write_text(text)
+
+
+@contextlib.contextmanager
 def signalling(daemon: Daemon) -> Iterator[Program]:
     """An rc10ctl signal that turns both motors."""
     daemon.must("clear")
@@ -62,21 +77,40 @@ def held_up(daemon: Daemon) -> Iterator[Program]:
         yield program
 
 
-@pytest.mark.parametrize("stop", [("disable", *PAIR), ("disable", "other"), ("estop",)])
+@pytest.mark.parametrize(
+    ("stop", "copy"),
+    [
+        (("disable", *PAIR), "readable"),
+        (("disable", "other"), "readable"),
+        (("estop",), "readable"),
+        (("disable", "other"), "not readable"),
+        (("disable", "other"), "with a module of another program"),
+    ],
+)
 def test_a_signal_ends_with_what_stops_a_motor_of_its_module(
-    lift: Daemon, stop: tuple[str, ...]
+    lift: Daemon, stop: tuple[str, ...], copy: str
 ) -> None:
-    with signalling(lift) as program:
+    with copy_as(lift, copy), signalling(lift) as program:
         lift.must(*stop)
         assert program.wait() == 1
         assert HAVE_ENDED in program.output
 
 
+def test_a_signal_without_the_file_needs_no_motor_of_another_module(lift: Daemon) -> None:
+    with copy_as(lift, "not readable"), signalling(lift) as program:
+        assert motor_of(lift.state(), "yaw")["status"] == "READY"
+        program.interrupt()
+        assert program.wait() == 0, program.output
+
+
+@pytest.mark.parametrize(
+    ("stop", "copy"), [(("estop",), "readable"), (("disable", *PAIR), "not readable")]
+)
 def test_a_signal_does_not_go_on_with_motors_that_were_stopped_and_enabled_meanwhile(
-    lift: Daemon,
+    lift: Daemon, stop: tuple[str, ...], copy: str
 ) -> None:
-    with held_up(lift) as program:
-        lift.must("estop")
+    with copy_as(lift, copy), held_up(lift) as program:
+        lift.must(*stop)
         lift.wait_motors(lambda motor: abs(float(motor["velocity_rpm"])) < 1)
         lift.must("clear")
         lift.must("enable", *PAIR)

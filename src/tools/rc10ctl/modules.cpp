@@ -2,6 +2,8 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -73,11 +75,12 @@ std::vector<std::string_view> viewsOf(std::span<const link::Name> names) {
   return views;
 }
 
-/// The motors that the module drives, by the file with which the robot started; none if that cannot be read.
-std::vector<std::size_t> motorsOf(const Global& global, const link::Welcome& welcome,
-                                  std::string_view module) {
+/// The motors that the module drives, by the file with which the robot started; nothing if that cannot be
+/// read.
+std::optional<std::vector<std::size_t>> motorsOf(const Global& global, const link::Welcome& welcome,
+                                                 std::string_view module) {
   const auto config = runningConfig(global, welcome);
-  if (!config) return {};
+  if (!config) return std::nullopt;
   for (const auto& each : config->modules) {
     if (each.settings.name != module) continue;
     auto motors = motorsNamedBy(each);
@@ -86,7 +89,13 @@ std::vector<std::size_t> motorsOf(const Global& global, const link::Welcome& wel
                  motors.end());
     return motors;
   }
-  return {};
+  return std::nullopt;
+}
+
+std::vector<std::size_t> allMotors(const link::Welcome& welcome) {
+  std::vector<std::size_t> motors(std::min<std::size_t>(welcome.motor_count, link::kMaxMotors));
+  std::iota(motors.begin(), motors.end(), std::size_t{0});
+  return motors;
 }
 
 /// Reason why the module moves nothing though it takes its inputs, and the remedy; empty if it can.
@@ -153,7 +162,8 @@ class Signalling {
                               [&](const auto& each) { return each.name.view() == message.module.view(); })),
         name_(printable(module_.name.view())),
         motors_(motorsOf(global, rc10d.welcome(), module_.name.view())),
-        stream_(namesOf(motors_), kSendPeriod) {}
+        watched_(motors_ ? *motors_ : allMotors(rc10d.welcome())),
+        stream_(namesOf(watched_), kSendPeriod) {}
 
   ExitCode run(const Global& global, Duration time) {
     if (const auto there = feed_.awaitState(); !there) return complain(there.error(), ExitCode::kFailed);
@@ -161,7 +171,7 @@ class Signalling {
     // It would move them as soon as somebody clears and enables.
     if (const auto why = runs_ ? std::string{} : atRest(); !why.empty())
       return complain({why}, ExitCode::kFailed);
-    for (const auto motor : motors_) {
+    for (const auto motor : watched_) {
       if (feed_.state()->motors[motor].status == MotorStatus::kActive) active_.push_back(motor);
     }
     std::string why = sendOn(time);
@@ -244,7 +254,9 @@ class Signalling {
            "': stop that program, or take over with a higher --priority";
   }
 
-  std::string atRest() const { return whyAtRest(module_, motors_, rc10d_.welcome(), feed_.state()); }
+  std::string atRest() const {
+    return motors_ ? whyAtRest(module_, *motors_, rc10d_.welcome(), feed_.state()) : std::string{};
+  }
 
   std::vector<std::string> namesOf(const std::vector<std::size_t>& motors) const {
     std::vector<std::string> names;
@@ -258,9 +270,10 @@ class Signalling {
   link::Signals& message_;
   const client::ModuleView& module_;
   std::string name_;
-  std::vector<std::size_t> motors_;  // as far as the file can be read
-  std::vector<std::size_t> active_;  // those that were, at the beginning
-  bool runs_ = false;                // the robot did
+  std::optional<std::vector<std::size_t>> motors_;  // the module's, if the file can be read
+  std::vector<std::size_t> watched_;                // a stop of one ends it; all, where they are not known
+  std::vector<std::size_t> active_;                 // those that were, at the beginning
+  bool runs_ = false;                               // the robot did
   client::CommandStream stream_;
   Unheeded unheeded_;
   bool obeyed_ = false;
