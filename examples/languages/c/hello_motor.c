@@ -1,4 +1,5 @@
-// Enables one motor, turns it for a second and prints its state; Ctrl-C lets go of it. C, with nothing but LCM.
+// Enables one motor, turns it for a second and prints its state; Ctrl-C lets go of it. C, with nothing but
+// LCM.
 //   hello_motor ROBOT MOTOR RPM
 #include <inttypes.h>
 #include <lcm/lcm.h>
@@ -11,10 +12,17 @@
 #include <time.h>
 
 #include "rc10_command_t.h"
+#include "rc10_event_t.h"
 #include "rc10_named_value_t.h"
 #include "rc10_request_t.h"
 #include "rc10_response_t.h"
 #include "rc10_robot_state_t.h"
+
+enum {
+  kMotorStatus = 100,    // code of the events "ACTIVE -> READY (…)"
+  kPauseUs = 100000,     // between two commands: Ctrl-Z, a busy computer
+  kPatienceUs = 1000000  // for a state of after it
+};
 
 static char client[] = "hello-c";
 static volatile sig_atomic_t interrupted = 0;
@@ -32,6 +40,12 @@ typedef struct {
   int64_t seq;      // grows with every message of ours
   int64_t awaited;  // the request whose answer is awaited
   int8_t status;    // of that answer, -1: none yet
+  bool enabled;     // by us
+  int64_t commanded_us;
+  int64_t state_us;  // of the newest state, with
+  char owner[32];    // who commands the motor, and
+  int8_t stop_cause;
+  char stopped[128];  // by whom or by what
   int64_t printed_us;
 } program_t;
 
@@ -52,15 +66,31 @@ static void onState(const lcm_recv_buf_t* buffer, const char* name, const rc10_r
   (void)buffer;
   (void)name;
   program_t* program = user;
-  if (state->mono_us < program->printed_us + 100000) return;
+  program->state_us = state->mono_us;
   for (int i = 0; i < state->motor_count; ++i) {
     const rc10_motor_state_t* motor = &state->motors[i];
     if (strcmp(motor->name, program->motor) != 0) continue;
+    snprintf(program->owner, sizeof program->owner, "%s", motor->owner);
+    program->stop_cause = motor->stop_cause;
+    if (state->mono_us < program->printed_us + 100000) continue;
     program->printed_us = state->mono_us;
     printf("%s status %d owner '%s' target %.1f measured %.1f rpm %.2f A\n", motor->name, motor->status,
            motor->owner, motor->target, (double)motor->velocity_rpm, (double)motor->current_a);
     fflush(stdout);
   }
+}
+
+static void stop(program_t* program, const char* why) {
+  if (program->stopped[0] == '\0') snprintf(program->stopped, sizeof program->stopped, "%s", why);
+}
+
+// A motor that was stopped, and that somebody enables anew, is not driven on.
+static void onEvent(const lcm_recv_buf_t* buffer, const char* name, const rc10_event_t* event, void* user) {
+  (void)buffer;
+  (void)name;
+  program_t* program = user;
+  const bool of_motor = event->code == kMotorStatus && strcmp(event->source, program->motor) == 0;
+  if (program->enabled && of_motor && strncmp(event->text, "ACTIVE -> ", 10) == 0) stop(program, event->text);
 }
 
 static void onResponse(const lcm_recv_buf_t* buffer, const char* name, const rc10_response_t* response,
@@ -101,6 +131,22 @@ static bool request(program_t* program, char* operation, rc10_named_value_t* val
   return program->status == RC10_RESPONSE_T_STATUS_OK;
 }
 
+// False once the motor was stopped. Events of a pause of ours may be lost: a state of after it shows what has
+// become of the target.
+static bool mayGoOn(program_t* program) {
+  const int64_t resumed_us = nowUs(CLOCK_MONOTONIC);
+  while (lcm_handle_timeout(program->lcm, 0) > 0) continue;  // all that waits
+  if (program->commanded_us > 0 && resumed_us > program->commanded_us + kPauseUs) {
+    while (program->state_us < resumed_us && nowUs(CLOCK_MONOTONIC) < resumed_us + kPatienceUs) {
+      lcm_handle_timeout(program->lcm, 10);
+    }
+    const bool ours = strcmp(program->owner, client) == 0;
+    const bool lapsed = program->owner[0] == '\0' && program->stop_cause == RC10_MOTOR_STATE_T_STOP_TIMEOUT;
+    if (program->state_us < resumed_us || !(ours || lapsed)) stop(program, "in a pause of this program");
+  }
+  return program->stopped[0] == '\0';
+}
+
 static void command(program_t* program, int8_t mode, double value) {
   rc10_setpoint_t setpoint = {.motor = program->motor,
                               .mode = mode,
@@ -115,6 +161,7 @@ static void command(program_t* program, int8_t mode, double value) {
                             .setpoint_count = 1,
                             .setpoints = &setpoint};
   rc10_command_t_publish(program->lcm, channel(program, "command"), &message);
+  program->commanded_us = nowUs(CLOCK_MONOTONIC);
 }
 
 int main(int count, char** words) {
@@ -124,7 +171,8 @@ int main(int count, char** words) {
   }
   program_t program = {.lcm = lcm_create(NULL), .robot = words[1], .motor = words[2]};
   if (program.lcm == NULL) {
-    fprintf(stderr, "hello_motor: LCM could not start: sudo ip route add 239.255.76.67/32 dev lo src 127.0.0.1\n");
+    fprintf(stderr,
+            "hello_motor: LCM could not start: sudo ip route add 239.255.76.67/32 dev lo src 127.0.0.1\n");
     return 1;
   }
   FILE* random = fopen("/dev/urandom", "rb");
@@ -135,19 +183,25 @@ int main(int count, char** words) {
   sigaction(SIGINT, &on_interrupt, NULL);
   sigaction(SIGTERM, &on_interrupt, NULL);
   rc10_robot_state_t_subscribe(program.lcm, channel(&program, "state"), onState, &program);
+  rc10_event_t_subscribe(program.lcm, channel(&program, "event"), onEvent, &program);
   rc10_response_t_subscribe(program.lcm, channel(&program, "response"), onResponse, &program);
 
-  const bool enabled = request(&program, "enable", NULL);
+  program.enabled = request(&program, "enable", NULL);
   // The loop is what keeps the motor going: a command acts for 100 ms.
-  for (int i = 0; enabled && !interrupted && i < 50; ++i) {
+  for (int i = 0; program.enabled && !interrupted && mayGoOn(&program) && i < 50; ++i) {
     command(&program, RC10_SETPOINT_T_MODE_VELOCITY, atof(words[3]));
     receiveUntil(&program, nowUs(CLOCK_MONOTONIC) + 20000);
   }
-  command(&program, RC10_SETPOINT_T_MODE_COAST, 0.0);
-  // With our end: what an e-stop holds meanwhile stays held.
-  rc10_named_value_t at_end = {.name = "at_end", .value = 1.0};
-  const bool disabled = request(&program, "disable", &at_end);
+  bool disabled = false;
+  if (mayGoOn(&program)) {
+    command(&program, RC10_SETPOINT_T_MODE_COAST, 0.0);
+    // With our end: what an e-stop holds meanwhile stays held.
+    rc10_named_value_t at_end = {.name = "at_end", .value = 1.0};
+    disabled = request(&program, "disable", &at_end);
+  } else {  // and, if it is enabled again, in the hands of another
+    fprintf(stderr, "hello_motor: %s was stopped: %s\n", program.motor, program.stopped);
+  }
   lcm_destroy(program.lcm);
   if (interrupted) return 130;
-  return enabled && disabled ? 0 : 1;
+  return program.enabled && disabled ? 0 : 1;
 }

@@ -7,6 +7,7 @@ import lcm.lcm.LCM;
 import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMSubscriber;
 import rc10.command_t;
+import rc10.event_t;
 import rc10.motor_state_t;
 import rc10.named_value_t;
 import rc10.request_t;
@@ -21,6 +22,9 @@ import rc10.setpoint_t;
  */
 public class HelloMotor implements LCMSubscriber {
   private static final String CLIENT = "hello-java";
+  private static final int MOTOR_STATUS = 100; // code of the events "ACTIVE -> READY (…)"
+  private static final long PAUSE_US = 100_000; // between two commands: Ctrl-Z, a busy computer
+  private static final long PATIENCE_US = 1_000_000; // for a state of after it
   private static final long LET_GO_MS = 10_000; // longer than a request waits for its answer
 
   private final LCM lcm = new LCM();
@@ -29,8 +33,13 @@ public class HelloMotor implements LCMSubscriber {
   private final long session = new Random().nextLong(); // of this run; a later run has another
   private long seq = 0; // grows with every message of ours
   private long printedUs = 0;
+  private long commandedUs = 0;
   private volatile boolean interrupted = false;
   // LCM calls messageReceived() from a thread of its own.
+  private volatile boolean enabled = false; // by us
+  private volatile motor_state_t newest = null;
+  private volatile long stateUs = 0; // after newest, of which it is the time
+  private volatile String stopped = null; // by whom or by what
   private final LinkedBlockingQueue<response_t> answers = new LinkedBlockingQueue<>();
 
   HelloMotor(String robot, String motor) throws IOException {
@@ -38,6 +47,7 @@ public class HelloMotor implements LCMSubscriber {
     this.motor = motor;
     // LCM takes regular expressions.
     lcm.subscribe(robot + "\\.v1\\.state", this);
+    lcm.subscribe(robot + "\\.v1\\.event", this);
     lcm.subscribe(robot + "\\.v1\\.response", this);
   }
 
@@ -47,25 +57,41 @@ public class HelloMotor implements LCMSubscriber {
       if (channel.endsWith(".response")) {
         response_t response = new response_t(data);
         // All clients hear all answers.
-        if (response.session == session) answers.add(response);
+        if (response.session != session) return;
+        if (response.status == response_t.STATUS_OK) enabled = true; // the first one does that
+        answers.add(response);
+      } else if (channel.endsWith(".event")) {
+        judge(new event_t(data));
       } else {
-        print(new robot_state_t(data));
+        take(new robot_state_t(data));
       }
     } catch (IOException error) {
       System.err.println("HelloMotor: " + channel + ": other definitions: " + error.getMessage());
     }
   }
 
-  private void print(robot_state_t state) {
-    if (state.mono_us < printedUs + 100_000) return;
+  private void take(robot_state_t state) {
     for (motor_state_t one : state.motors) {
       if (!one.name.equals(motor)) continue;
+      newest = one;
+      if (state.mono_us < printedUs + 100_000) continue;
       printedUs = state.mono_us;
       System.out.printf(
           Locale.ROOT,
           "%s status %d owner '%s' target %.1f measured %.1f rpm %.2f A%n",
           one.name, one.status, one.owner, one.target, one.velocity_rpm, one.current_a);
     }
+    stateUs = state.mono_us;
+  }
+
+  /** A motor that was stopped, and that somebody enables anew, is not driven on. */
+  private void judge(event_t event) {
+    boolean ofMotor = event.code == MOTOR_STATUS && event.source.equals(motor);
+    if (enabled && ofMotor && event.text.startsWith("ACTIVE -> ")) stop(event.text);
+  }
+
+  private synchronized void stop(String why) {
+    if (stopped == null) stopped = why;
   }
 
   /** Sends a request under one number until it is answered: rc10d carries it out once. */
@@ -90,6 +116,28 @@ public class HelloMotor implements LCMSubscriber {
     return false;
   }
 
+  /** CLOCK_MONOTONIC, as in the states: that is what nanoTime() is on Linux. */
+  private static long nowUs() {
+    return System.nanoTime() / 1000;
+  }
+
+  /**
+   * False once the motor was stopped. Events of a pause of ours may be lost: a state of after it shows what has
+   * become of the target.
+   */
+  private boolean mayGoOn() throws InterruptedException {
+    long resumedUs = nowUs();
+    if (commandedUs > 0 && resumedUs > commandedUs + PAUSE_US) {
+      while (stateUs < resumedUs && nowUs() < resumedUs + PATIENCE_US) Thread.sleep(5);
+      motor_state_t now = newest;
+      boolean ours = now != null && now.owner.equals(CLIENT);
+      boolean lapsed =
+          now != null && now.owner.isEmpty() && now.stop_cause == motor_state_t.STOP_TIMEOUT;
+      if (stateUs < resumedUs || !(ours || lapsed)) stop("in a pause of this program");
+    }
+    return stopped == null;
+  }
+
   private void command(byte mode, double value) {
     setpoint_t setpoint = new setpoint_t();
     setpoint.motor = motor;
@@ -105,6 +153,7 @@ public class HelloMotor implements LCMSubscriber {
     message.setpoint_count = 1;
     message.setpoints = new setpoint_t[] {setpoint};
     lcm.publish(robot + ".v1.command", message);
+    commandedUs = nowUs();
   }
 
   public static void main(String[] words) throws Exception {
@@ -130,16 +179,21 @@ public class HelloMotor implements LCMSubscriber {
     Runtime.getRuntime().addShutdownHook(hook);
     boolean enabled = program.request("enable");
     // The loop is what keeps the motor going: a command acts for 100 ms.
-    for (int i = 0; enabled && !program.interrupted && i < 50; ++i) {
+    for (int i = 0; enabled && !program.interrupted && program.mayGoOn() && i < 50; ++i) {
       program.command(setpoint_t.MODE_VELOCITY, rpm);
       Thread.sleep(20);
     }
-    program.command(setpoint_t.MODE_COAST, 0.0);
-    // With our end: what an e-stop holds meanwhile stays held.
-    named_value_t atEnd = new named_value_t();
-    atEnd.name = "at_end";
-    atEnd.value = 1;
-    boolean disabled = program.request("disable", atEnd);
+    boolean disabled = false;
+    if (program.mayGoOn()) {
+      program.command(setpoint_t.MODE_COAST, 0.0);
+      // With our end: what an e-stop holds meanwhile stays held.
+      named_value_t atEnd = new named_value_t();
+      atEnd.name = "at_end";
+      atEnd.value = 1;
+      disabled = program.request("disable", atEnd);
+    } else { // and, if it is enabled again, in the hands of another
+      System.err.println("HelloMotor: " + words[1] + " was stopped: " + program.stopped);
+    }
     if (program.interrupted) return; // the hook waits for that; the exit status is 130
     Runtime.getRuntime().removeShutdownHook(hook);
     System.exit(enabled && disabled ? 0 : 1);

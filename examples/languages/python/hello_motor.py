@@ -46,7 +46,7 @@ class Program:
         self.answer = None
         self.state = motor_state_t()
         self.state_us = 0
-        self.obeyed = False
+        self.enabled = False  # by us
         self.printed_us = 0
         self.commanded_us = 0
         self.stopped = ""  # by whom or by what
@@ -60,10 +60,12 @@ class Program:
         self.interrupted = True
         signal.signal(number, signal.SIG_DFL)
 
-    def receive(self, timeout_s: float) -> None:
+    def receive(self, timeout_s: float) -> bool:
         """Waits for a message; not in LCM, to which a signal meanwhile is an error."""
-        if select.select([self.lcm.fileno()], [], [], timeout_s)[0]:
+        came = bool(select.select([self.lcm.fileno()], [], [], timeout_s)[0])
+        if came:
             self.lcm.handle()
+        return came
 
     def on_state(self, _: str, data: bytes) -> None:
         """Keeps the motor, and prints it ten times a second."""
@@ -73,7 +75,6 @@ class Program:
             if motor.name != self.motor:
                 continue
             self.state = motor
-            self.obeyed = self.obeyed or motor.owner == CLIENT
             if state.mono_us >= self.printed_us + 100_000:
                 self.printed_us = state.mono_us
                 print(
@@ -87,7 +88,7 @@ class Program:
         """Keeps that the motor was stopped: enabled by somebody, it is not driven on."""
         event = event_t.decode(data)
         of_motor = event.code == MOTOR_STATUS and event.source == self.motor
-        if self.obeyed and of_motor and event.text.startswith("ACTIVE -> "):
+        if self.enabled and of_motor and event.text.startswith("ACTIVE -> "):
             self.stopped = event.text
 
     def on_response(self, _: str, data: bytes) -> None:
@@ -127,7 +128,9 @@ class Program:
         Events of a pause may be lost. A state of after it shows what has become of the target.
         """
         resumed_us = now_us = time.monotonic_ns() // 1000
-        if self.obeyed and now_us > self.commanded_us + PAUSE_US:
+        while self.receive(0.0):
+            pass  # all that waits
+        if self.commanded_us and now_us > self.commanded_us + PAUSE_US:
             while self.state_us < resumed_us and now_us < resumed_us + PATIENCE_US:
                 self.receive(0.01)
                 now_us = time.monotonic_ns() // 1000
@@ -160,9 +163,9 @@ def main() -> int:
     signal.signal(signal.SIGINT, program.on_interrupt)
     signal.signal(signal.SIGTERM, program.on_interrupt)
     disabled = False
-    enabled = program.request("enable")
+    program.enabled = program.request("enable")
     try:
-        for _ in range(50 if enabled else 0):
+        for _ in range(50 if program.enabled else 0):
             if program.interrupted or not program.may_go_on():
                 break
             program.command(setpoint_t.MODE_VELOCITY, rpm)
@@ -170,15 +173,15 @@ def main() -> int:
             while time.monotonic() < end_s:
                 program.receive(0.005)
     finally:
-        if program.stopped:  # and, if it is enabled again, in the hands of another
-            print(f"hello_motor: {motor} was stopped: {program.stopped}", file=sys.stderr)
-        else:
+        if program.may_go_on():
             program.command(setpoint_t.MODE_COAST, 0.0)
             # With our end: what an e-stop holds meanwhile stays held.
             disabled = program.request("disable", {"at_end": 1.0})
+        else:  # and, if it is enabled again, in the hands of another
+            print(f"hello_motor: {motor} was stopped: {program.stopped}", file=sys.stderr)
     if program.interrupted:
         return 130
-    return 0 if enabled and disabled else 1
+    return 0 if program.enabled and disabled else 1
 
 
 if __name__ == "__main__":
