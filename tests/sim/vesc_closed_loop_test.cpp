@@ -327,6 +327,45 @@ TEST(VescClosedLoop, TheWatchdogOfADriveThatHasJustStartedIsProvenWhileItRests) 
   ASSERT_TRUE(rig.enable(100ms));
 }
 
+TEST(VescClosedLoop, ADriveThatSpeaksAndAnswersNothingDoesNotReceive) {
+  for (const char* angle : {"tachometer", "encoder", "none"}) {
+    SCOPED_TRACE(angle);
+    auto rig = rigOf(settings({1.0, 1}, {{"angle", std::string{angle}}}));
+    ASSERT_TRUE(rig.enable());
+    rig.command({.mode = ControlMode::kVelocity, .value = 800.0});
+    rig.run(500ms);
+    rig.lose([](const CanFrame&) { return true; });
+    rig.run(450ms);
+    EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone);
+    rig.run(300ms);
+    EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveCommunication);
+    rig.motor().order(FrameKind::kRest);
+    rig.run(1ms);
+    EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kNone) << "nothing is to obey";
+    rig.lose({});
+    rig.run(200ms);
+    EXPECT_TRUE(rig.enable()) << "it answers again";
+  }
+}
+
+TEST(VescClosedLoop, ADriveThatIsSilentTooOrAnswersNowAndThenMayReceive) {
+  auto rig = rigOf(settings());
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kVelocity, .value = 800.0});
+  int questions = 0;
+  rig.lose([&questions](const CanFrame& frame) {
+    const bool asks = frame.id == vesc::canId(vesc::Packet::kProcessShortBuffer, 7);
+    return asks && ++questions % 4 != 0;
+  });
+  const auto expectNone = [&rig] { ASSERT_EQ(rig.motor().complaint().fault, FaultCode::kNone); };
+  rig.run(5s, expectNone);
+  rig.lose({});
+  rig.cut(true);
+  rig.run(950ms, expectNone);
+  rig.cut(false);
+  rig.run(1s, expectNone);
+}
+
 TEST(VescClosedLoop, ADriveWithoutAWatchdogIsNotEnabledUnlessNobodyAsks) {
   auto rig = rigOf(settings());
   driveOf(rig).setWatchdog(0ms);

@@ -49,6 +49,7 @@ FrameVerdict VESC_Motor::updateFeedback(const CanFrame& frame) noexcept {
     return FrameVerdict::kAccepted;
   }
   if (frame.length != vesc::kStatusLength) return FrameVerdict::kMalformed;
+  inquiry_.spoke();
   switch (packet) {
     case vesc::Packet::kStatus1: takeStatus1(frame); break;
     case vesc::Packet::kStatus4:

@@ -38,6 +38,8 @@ void VescInquiry::update(const Tick& tick, FrameKind ordered) noexcept {
   ask(tick);
 }
 
+bool VescInquiry::deaf() const noexcept { return deaf_ || ignored_ > kMaxUnanswered; }
+
 bool VescInquiry::proving() const noexcept { return proof_ == Proof::kOpen && heard_ && !obeys(ordered_); }
 
 void VescInquiry::watchSilence(const Tick& tick) noexcept {
@@ -82,7 +84,12 @@ void VescInquiry::ask(const Tick& tick) noexcept {
   // While enabling the second question follows the answer to the first at once.
   const bool hurry = enabling && answered && (fresh_ & next_) == 0;
   if (!hurry && tick.now - asked_ < every) return;
-  if (!answered) ++unanswered_;
+  if (!answered) {
+    ++unanswered_;
+    // Of a drive that is silent, too, it says nothing.
+    if (spoke_) ++ignored_;
+  }
+  spoke_ = false;
   question_ = next_;
   pending_ = next_;
   next_ = next_ == vesc::kAskStatus ? vesc::kAskFault : vesc::kAskStatus;
@@ -91,6 +98,7 @@ void VescInquiry::ask(const Tick& tick) noexcept {
 
 void VescInquiry::take(const vesc::Answer& answer) noexcept {
   if (!std::exchange(heard_, true)) ordered_since_ = now_;
+  ignored_ = 0;
   fresh_ |= answer.mask;
   if (answer.mask == pending_) {
     pending_ = 0;
@@ -117,6 +125,7 @@ void VescInquiry::restart() noexcept {
   heard_us_at_.reset();
   silent_ = false;
   deaf_ = false;
+  ignored_ = 0;
   fault_ = 0;
   status_ = 0;
   pending_ = 0;

@@ -24,6 +24,8 @@ class VescInquiry {
   void take(const vesc::Answer& answer) noexcept;
   /// A command goes to the drive.
   void told() noexcept { told_ = true; }
+  /// A status frame of the drive, which nobody asks for.
+  void spoke() noexcept { spoke_ = true; }
   /// The drive was restarted, or may be another one: all is to be found out anew.
   void restart() noexcept;
 
@@ -34,8 +36,8 @@ class VescInquiry {
   [[nodiscard]] SequenceProgress progress() const noexcept { return progress_; }
   [[nodiscard]] std::uint8_t fault() const noexcept { return fault_; }
   [[nodiscard]] bool killed() const noexcept { return (status_ & vesc::kKillSwitch) != 0; }
-  /// It has not heard the commands that it was sent all the time.
-  [[nodiscard]] bool deaf() const noexcept { return deaf_; }
+  /// It has not heard the commands that it was sent all the time: it says so, or speaks and answers nothing.
+  [[nodiscard]] bool deaf() const noexcept;
   [[nodiscard]] bool watchdogProven() const noexcept { return proof_ == Proof::kProven; }
 
  private:
@@ -57,11 +59,13 @@ class VescInquiry {
   std::uint32_t pending_ = 0;  ///< Asked, not yet answered.
   std::uint32_t next_ = vesc::kAskStatus;
   int unanswered_ = 0;
+  int ignored_ = 0;  ///< Questions since its last answer after which it spoke.
   std::uint32_t fresh_ = 0;  ///< Answers since the enabling began.
   Proof proof_ = Proof::kOpen;
   bool begun_ = false;
   bool heard_ = false;  ///< It has answered since it was (re)started.
   bool told_ = false;   ///< It was sent a command since then.
+  bool spoke_ = false;  ///< Since the last question.
   bool silent_ = false;
   bool deaf_ = false;
   std::uint8_t fault_ = 0;
