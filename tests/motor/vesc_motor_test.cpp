@@ -296,6 +296,17 @@ TEST_F(VescMotorTest, EnablingADriveThatDoesNotAnswerFails) {
   EXPECT_EQ(motor.sequenceProgress(), SequenceProgress::kPending);  // anew
 }
 
+TEST_F(VescMotorTest, ItIsNotEnabledWhileAFallbackCommandsADriveWhoseWatchdogIsNotProven) {
+  for (const bool asks : {true, false}) {
+    auto& motor = asks ? make(vescSettings()) : makeWith();
+    for (const auto kind : {FrameKind::kHold, FrameKind::kDamp, FrameKind::kBrake}) {
+      motor.order(kind);
+      tick();
+      EXPECT_EQ(motor.sequenceProgress(), asks ? SequenceProgress::kFailed : SequenceProgress::kDone);
+    }
+  }
+}
+
 TEST_F(VescMotorTest, TicksAndFramesAllocateNothing) {
   auto& motor = make(vescSettings());
   motor.order(FrameKind::kCommand, {.mode = ControlMode::kTotalAngle, .value = 100.0});

@@ -76,6 +76,9 @@ constexpr std::string_view kAngle = "angle_deg";
       return "written, but the drive did not tell that it stored it: it is lost when the power is off";
     case Refusal::kNoGains: return "its drive closes its loops, with its own gains";
     case Refusal::kStillActs: return "still being damped, braked or held: disable it once more to let go";
+    case Refusal::kRestFirst:
+      return "held, damped or braked, and its drive has to rest before it is enabled: disable it once more, "
+             "which lets go, then enable it";
     case Refusal::kAlone: return "locked while another motor is enabled alone";
     case Refusal::kOthersOn: return "not the only one: disable all others first";
     case Refusal::kTurnUnclear:

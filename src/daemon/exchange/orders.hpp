@@ -116,6 +116,7 @@ enum class Refusal : std::uint8_t {
   kStillActs,     ///< It is still being damped, braked or held.
   kAlone,         ///< Another motor is enabled alone: OrderResult::in_the_way.
   kOthersOn,      ///< Others are enabled, or of its group held, and may not be: OrderResult::in_the_way.
+  kRestFirst,     ///< A fallback acts, and its drive can be enabled from rest alone.
   kTurnUnclear,   ///< Its encoder is absolute, but its travel does not say on which turn it stands.
   kOutOfReach,  ///< Not this zero: its drive could not be told all of its travel, or has not told its turns.
   kScanning,    ///< Another scan goes on.

@@ -123,6 +123,7 @@ void Supervisor::transition(std::size_t motor, MotorEvent event, const Stop& why
                   : event == MotorEvent::kGroupStop ? Refusal::kGroup
                   : isDisable(event)                ? Refusal::kDisabled
                   : axis.turnUnclear()              ? Refusal::kTurnUnclear
+                  : axis.fallbackActs()             ? Refusal::kRestFirst
                                                     : Refusal::kDriveRefused);
   }
   const bool stopped = after == MotorStatus::kFault || (isOn(before) && !isOn(after));

@@ -319,7 +319,10 @@ std::size_t VESC_Motor::packRest(std::span<CanFrame> out) const noexcept {
 // ---- Enabling
 
 SequenceProgress VESC_Motor::sequenceProgress() const noexcept {
-  return own_.ask_status && ordered() == FrameKind::kEnable ? inquiry_.progress() : SequenceProgress::kDone;
+  if (!own_.ask_status) return SequenceProgress::kDone;
+  if (enabling()) return inquiry_.progress();
+  // Told something all the time, it never shows its watchdog.
+  return obeying() && !watchdogProven() ? SequenceProgress::kFailed : SequenceProgress::kDone;
 }
 
 // ---- Complaints

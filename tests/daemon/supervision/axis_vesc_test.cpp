@@ -34,5 +34,50 @@ TEST(VescThatReceivesNothing, IsAFaultWithinASecondAndDoesNotStartAgainByItself)
   EXPECT_EQ(motor.seen().status, MotorStatus::kFault);
 }
 
+class VescThatIsHeld : public ::testing::TestWithParam<const char*> {
+ protected:
+  static constexpr MotorSet kOne{1U};
+
+  Refusal enable() { return robot().orderFor(kOne, Operation::kEnable).motors[0]; }
+  void disable(Acting expected) {
+    (void)robot().orderFor(kOne, Operation::kDisable);
+    ASSERT_EQ(motor_.seen().status, MotorStatus::kReady);
+    ASSERT_EQ(motor_.seen().acting, expected);
+  }
+  VirtualRobot& robot() { return motor_.robot(); }
+
+  OneMotor motor_{kVesc + GetParam()};
+};
+
+// Another drive may have been plugged in meanwhile, without a watchdog.
+TEST_P(VescThatIsHeld, AfterAGapIsRefusedAndHeldOnAndHasToRestFirst) {
+  robot().simBus().silence(0, true);
+  robot().run(330);
+  robot().simBus().silence(0, false);
+  robot().run(50);
+  ASSERT_EQ(motor_.seen().status, MotorStatus::kActive);
+  disable(Acting::kHold);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    EXPECT_EQ(enable(), Refusal::kRestFirst);
+    EXPECT_EQ(motor_.seen().status, MotorStatus::kReady);
+    EXPECT_EQ(motor_.seen().acting, Acting::kHold) << "a load does not fall";
+    robot().run(20);
+  }
+  disable(Acting::kNothing);
+  EXPECT_EQ(enable(), Refusal::kNone);
+  EXPECT_EQ(motor_.seen().status, MotorStatus::kActive);
+}
+
+TEST_P(VescThatIsHeld, WithAProvenWatchdogIsEnabledAtOnce) {
+  disable(Acting::kHold);
+  EXPECT_EQ(enable(), Refusal::kNone);
+  EXPECT_EQ(motor_.seen().acting, Acting::kHold);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, VescThatIsHeld,
+                         ::testing::Values(", feedback_timeout_ms: 400, on_disable: hold",
+                                           ", feedback_timeout_ms: 400, on_disable: hold, angle: encoder"),
+                         [](const auto& each) { return "case" + std::to_string(each.index); });
+
 }  // namespace
 }  // namespace rc10::test::axis_vesc_test
