@@ -345,9 +345,9 @@ class Joint : public Module_Base {
   // The reference of its angle is in doubt, and a stop may lie beyond the limits that follow from it.
   void beginHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
     const auto now = measured(feedback, tick, robot);
-    if (!now.switch_heard) {
-      // For nothing it would give up its angle, and with it the load that it holds there.
-      robot.report(kNoSwitch);
+    if (!now.switch_heard || feedback.zero_refused) {
+      // For nothing it would give up its angle, with the load that it holds there, or its soft limits.
+      robot.report(now.switch_heard ? kNoReach : kNoSwitch);
       if (!feedback.zeroed) state_ = State::kHomingFailed;
       return;
     }

@@ -34,6 +34,7 @@ struct MotorFeedback {
   bool zeroed = false;  ///< The angle has a known reference.
   bool bounds_only =
       false;  ///< It is known, but its drive can be told no place: soft limits alone act by it.
+  bool zero_refused = false;  ///< Any zero: its drive's count of turns is in doubt.
   std::uint64_t losses = 0;   ///< Losses of a known reference, those that ended at once included.
   bool turn_unclear = false;  ///< Absolute, but its travel does not say on which turn it stands.
   bool angle_at_end = false;  ///< The drive's field ends here: the shaft may turn on, and nobody sees it.

@@ -71,6 +71,8 @@ class FakeRobot : public ModuleRobot {
   [[nodiscard]] const std::map<std::pair<std::size_t, std::size_t>, double>& sent() const { return sent_; }
   [[nodiscard]] const std::vector<std::size_t>& events() const { return events_; }
   [[nodiscard]] MonotonicTime now() const { return tick_.now; }
+  /// References that it was to forget.
+  [[nodiscard]] int forgotten() const { return forgotten_; }
   /// Somebody asks for a disable.
   void disable() { ++disables_; }
   void setState(RobotStatus state) { state_ = state; }
@@ -100,7 +102,10 @@ class FakeRobot : public ModuleRobot {
     largest_request_ = std::max(largest_request_, motors.size());
     for (const auto motor : motors) ask(request, motor, 0.0);
   }
-  void forgetReference(std::size_t motor) noexcept override { motors_[motor].feedback.zeroed = false; }
+  void forgetReference(std::size_t motor) noexcept override {
+    motors_[motor].feedback.zeroed = false;
+    ++forgotten_;
+  }
   [[nodiscard]] Duration clientsSilent() const noexcept override { return clients_silent_; }
   void hearClient(MonotonicTime said) noexcept override {
     client_heard_ = true;
@@ -124,6 +129,7 @@ class FakeRobot : public ModuleRobot {
   bool client_heard_ = false;
   MonotonicTime client_said_{};
   std::uint32_t disables_ = 0;
+  int forgotten_ = 0;
   std::size_t largest_request_ = 0;  ///< Motors of one request.
   std::vector<Motor> motors_;
   std::vector<Asked> asked_;

@@ -353,6 +353,32 @@ TEST_F(HomingJoint, AZeroThatItsMotorRefusesIsNoHome) {
   }
 }
 
+TEST_F(HomingJoint, AZeroThatIsSureToBeRefusedBeginsNoHomingAndKeepsTheAngle) {
+  for (const bool known : {true, false}) {
+    buildWithStop();
+    events_.clear();
+    const int forgotten = robot_.forgotten();
+    robot_.motor(0).feedback.zeroed = known;
+    robot_.motor(0).feedback.bounds_only = !known;
+    robot_.motor(0).feedback.zero_refused = true;
+    ask(kNoSignal, 1.0);
+    for (int i = 0; i < 200; ++i) {
+      run(1);
+      ASSERT_FALSE(robot_.motor(0).target.has_value()) << "nothing is pressed";
+    }
+    EXPECT_EQ(robot_.forgotten(), forgotten);
+    EXPECT_EQ(robot_.motor(0).feedback.zeroed, known);
+    EXPECT_EQ(state(), known ? kIdle : kHomingFailed);
+    EXPECT_THAT(events_, ElementsAre(7U));
+    robot_.motor(0).feedback.zero_refused = false;  // it was enabled anew
+    ask(kNoSignal, 0.0);
+    run(1);
+    ask(kNoSignal, 1.0);
+    run(1);
+    EXPECT_EQ(state(), kHoming);
+  }
+}
+
 TEST_F(HomingJoint, AStandstillThatGravityMakesIsNotTheStop) {
   buildWithStop();
   robot_.motor(0).feedback.zeroed = false;

@@ -335,6 +335,21 @@ TEST(CubemarsMit, APositionFieldThatIsCutOffLosesTheReference) {
   EXPECT_FALSE(bench.motor().feedback().angle_at_end);
 }
 
+TEST(CubemarsMit, ATurnThatIsUnknownAfterASilenceTakesNoZeroWithinATravel) {
+  for (const bool limited : {true, false}) {
+    auto settings = mit();
+    if (limited) settings.travel = {-100.0, 100.0};
+    Mit bench(settings);
+    double rad = 11.0;
+    (void)bench.feedMit(rad);
+    while (rad < 14.0) (void)bench.feedMit(rad += 0.05);
+    EXPECT_FALSE(bench.motor().feedback().zero_refused);
+    (void)bench.feedMit(rad, 0.0, 0.0, 0, milliseconds{200});
+    EXPECT_EQ(bench.motor().feedback().zero_refused, limited);
+    EXPECT_EQ(bench.motor().setZero(0.0), !limited);
+  }
+}
+
 TEST(CubemarsMit, WithoutFreshFeedbackNothingButNoTorqueIsSent) {
   Mit bench(mit());
   const Target target{.mode = ControlMode::kVelocity, .value = 60.0};

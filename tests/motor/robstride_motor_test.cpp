@@ -197,11 +197,13 @@ TEST(RobStrideMotor, AnAbsoluteAngleInDoubtIsNoReferenceWhileItObeysButBoundsIt)
   EXPECT_FALSE(bench.motor.feedback().zeroed) << "its targets would only be damped";
   EXPECT_TRUE(bench.motor.feedback().bounds_only) << "soft limits hold";
   EXPECT_EQ(bench.motor.feedback().losses, 1U);
+  EXPECT_TRUE(bench.motor.feedback().zero_refused);
   EXPECT_FALSE(bench.motor.setZero(0.0)) << "the next sample would take it back";
   bench.tick(FrameKind::kPoll);
   bench.run(1.0);
   EXPECT_TRUE(bench.motor.feedback().zeroed);
   EXPECT_FALSE(bench.motor.feedback().bounds_only);
+  EXPECT_FALSE(bench.motor.feedback().zero_refused);
   EXPECT_TRUE(bench.motor.setZero(0.0));
 }
 
@@ -213,6 +215,16 @@ TEST(RobStrideMotor, ALongSilenceLosesTheReferenceOfACyberGear) {
   EXPECT_TRUE(bench.motor.feedback().zeroed);
   bench.runAfter(milliseconds{250}, 0.3);
   EXPECT_FALSE(bench.motor.feedback().zeroed);
+}
+
+TEST(RobStrideMotor, AnAngleInDoubtThatNoEncoderTellsTakesNoZeroEither) {
+  Bench bench(robStrideSettings("CyberGear"));
+  bench.run(0.3);
+  bench.tick(FrameKind::kIdle);
+  bench.runAfter(milliseconds{250}, 0.3);
+  EXPECT_TRUE(bench.motor.feedback().zero_refused);
+  EXPECT_FALSE(bench.motor.feedback().bounds_only) << "it has no angle that could bound it";
+  EXPECT_FALSE(bench.motor.setZero(0.0));
 }
 
 TEST(RobStrideMotor, AJumpIsCountedAndAnglesAreNotFollowedUntilEnabledAnew) {

@@ -106,6 +106,7 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   samples_at_end_ = report->at_end ? std::min(samples_at_end_ + 1, kSamplesAtEnd) : 0;
   feedback_.angle_at_end = samples_at_end_ == kSamplesAtEnd;
   if (feedback_.angle_at_end) loseReference();
+  feedback_.zero_refused = refusesZeros();
   feedback_.torque_nm = static_cast<float>(torqueToOutput(report->torque_nm));
   feedback_.current_a = feedback_.torque_nm / torqueNmPerA();
   if (report->temperature_c) feedback_.temperature_c = static_cast<float>(*report->temperature_c);
@@ -158,13 +159,15 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
   loseReference();
 }
 
-// A turn of the field that is not known makes every angle wrong, but a wheel without limits may count anew.
+bool CubemarsMit::limited() const noexcept {
+  return std::isfinite(travel_.min_deg) || std::isfinite(travel_.max_deg);
+}
+
 bool CubemarsMit::setZero(double angle_deg) noexcept {
-  const bool limited = std::isfinite(travel_.min_deg) || std::isfinite(travel_.max_deg);
   const double ratio = toDrive(1.0);
   const double reach_deg = springReach(angle_stiffness_) / kRadPerDeg;
   const bool reaches = reachesTravel(travel_, angle_deg, lastDriveDeg(), ratio, reach_deg);
-  if (limited && (turns_unknown_ || !reaches)) return false;
+  if (refusesZeros() || (limited() && !reaches)) return false;
   return CubeMars_Motor::setZero(angle_deg);
 }
 

@@ -52,6 +52,9 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] double springReach(double stiffness_nm_per_rad) const noexcept;
   void watchSpring(const cubemars::MitReport& report) noexcept;
   [[nodiscard]] bool pullsOtherwise() const noexcept;
+  [[nodiscard]] bool limited() const noexcept;
+  /// A turn of the field that is not known makes every angle wrong, but a wheel without limits may count anew.
+  [[nodiscard]] bool refusesZeros() const noexcept { return turns_unknown_ && limited(); }
   [[nodiscard]] SpringLaw lawOf(const Target& target, MonotonicTime now) noexcept;
   [[nodiscard]] SpringLaw velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
   [[nodiscard]] SpringLaw angleLaw(const Target& target, double stiffness, double damping) noexcept;

@@ -187,7 +187,8 @@ void RobStride_Motor::takeFeedback(const robstride::Feedback& seen, MonotonicTim
   // acceptSample() finds an absolute reference again, even at the end of the scale.
   if (feedback_.angle_at_end) loseReference();
   // followOperation() and followAngle() follow no place until it is enabled anew.
-  feedback_.bounds_only = feedback_.zeroed && angles_in_doubt_ && obeying();
+  feedback_.zero_refused = refusesZeros();
+  feedback_.bounds_only = feedback_.zeroed && feedback_.zero_refused;
   if (feedback_.bounds_only) feedback_.zeroed = false;
   enabling_.onFeedback(seen);
 }
@@ -216,8 +217,7 @@ void RobStride_Motor::trackPosition(const robstride::Feedback& seen, MonotonicTi
 }
 
 bool RobStride_Motor::setZero(double angle_deg) noexcept {
-  // It would be followed nowhere until the drive is enabled anew, in another count perhaps.
-  if (angles_in_doubt_ && obeying()) return false;
+  if (refusesZeros()) return false;
   const double reach_rad = springReachRad(scaleEndRad(), limitNm(), angle_stiffness_);
   const double here_rad = position_rad_ + scale_offset_rad_;
   const bool reaches =

@@ -76,6 +76,8 @@ class RobStride_Motor : public SoloMotor {
   void takeParameter(const CanFrame& frame) noexcept;
   void trackPosition(const robstride::Feedback& seen, MonotonicTime received) noexcept;
   void doubtAngles() noexcept;
+  /// One would be followed nowhere until the drive is enabled anew, in another count perhaps.
+  [[nodiscard]] bool refusesZeros() const noexcept { return angles_in_doubt_ && obeying(); }
   void takePosition(double rad) noexcept;
 
   void followOperation(const Target& target, MonotonicTime now) noexcept;

@@ -218,6 +218,38 @@ TEST_F(JointOfARobot, HomesWithACurrentThatIsSlewedAndFromItsFarStop) {
   EXPECT_NEAR(shaft().outputAngleDeg() - angleDeg(), kStopDeg, 0.1);
 }
 
+// The count of a RobStride is in doubt until it is enabled anew: it refuses any zero until then.
+TEST_F(JointOfARobot, AHomingThatCannotSucceedDoesNotBeginAndLeavesTheSoftLimits) {
+  start({.motor = "model: RS00, id: 3",
+         .more = ", angle_min_deg: 0, angle_max_deg: 90, feedback_timeout_ms: 400",
+         .load = "initial_angle_deg: 40"});
+  robot->simBus().silence(0, true);
+  run(230);
+  robot->simBus().silence(0, false);
+  run(50);
+  ASSERT_EQ(status(), MotorStatus::kActive);
+  ASSERT_TRUE(robot->motor(kArm).feedback.bounds_only);
+  (void)robot->events();
+  ask(kNoSignal, 1.0);
+  for (int i = 0; i < 500; ++i) {
+    tick();
+    ASSERT_NE(state(), kHoming);
+    ASSERT_EQ(robot->motor(kArm).target.mode, ControlMode::kCoast) << "nothing is pressed";
+  }
+  EXPECT_EQ(state(), kHomingFailed);
+  EXPECT_THAT(robot->events(), Contains(Field(&Event::code, EventCode::kModule)));
+  sends = false;
+  run(100);
+  robot->hold(kArm, {.mode = ControlMode::kVelocity, .value = 20.0}, 3000);
+  EXPECT_GT(shaft().outputAngleDeg(), 80.0);
+  EXPECT_LT(shaft().outputAngleDeg(), 95.0) << "its own stop is at 120";
+  (void)robot->order(Operation::kDisable);
+  run(100);
+  enable();
+  home();
+  EXPECT_EQ(state(), kFollowing) << "enabled anew it homes";
+}
+
 /// Motors whose encoder tells their angle at power-up.
 class JointWithAnEncoder : public JointOfARobot, public ::testing::WithParamInterface<Keys> {};
 
