@@ -314,6 +314,59 @@ TEST_F(LKTechMotor, TurnsThatTheDriveHasForgottenAreAComplaintWhileItWasToObey) 
   EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
 }
 
+/// At 300 rpm, 20 turns on, after a silence.
+class TurningLKTechMotor : public LKTechMotor {
+ protected:
+  void returnAfter(Duration silence, double count_deg) {
+    comeOnline(0x2000, 20);
+    ASSERT_TRUE(motor_->setZero(0.0));
+    hear(readingReply(0, 1800, 0x2000));
+    (void)told({.mode = ControlMode::kVelocity, .value = 300.0});
+    now_ += silence;
+    const double within_deg = count_deg - 360.0 * std::floor(count_deg / 360.0);
+    const auto encoder = static_cast<std::uint16_t>(std::lround(within_deg / 360.0 * 65536.0));
+    hear(readingReply(0, 1800, encoder));
+    hear(angleReply(std::llround(count_deg * 100.0)));
+    hear(readingReply(0, 1800, encoder));
+  }
+};
+
+TEST_F(TurningLKTechMotor, HasTurnedOnInASilenceAndWasNotRestarted) {
+  for (const int ms : {101, 150, 200, 300, 2000}) {
+    SCOPED_TRACE(ms);
+    motor_ = motorOf(settingsOf());
+    returnAfter(std::chrono::milliseconds{ms}, 7245.0 + 1.8 * ms);
+    EXPECT_EQ(motor_->complaint().fault, FaultCode::kNone);
+    EXPECT_TRUE(motor_->feedback().zeroed);
+    EXPECT_NEAR(motor_->feedback().total_angle_deg, 1.8 * ms, 0.01);
+  }
+}
+
+TEST_F(TurningLKTechMotor, WhoseDriveCountsAfreshWasRestarted) {
+  for (const double count_deg : {20.0, -340.0, 350.0, 500.0}) {
+    SCOPED_TRACE(count_deg);
+    motor_ = motorOf(settingsOf());
+    returnAfter(std::chrono::milliseconds{300}, count_deg);
+    EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveStopped);
+  }
+}
+
+TEST_F(LKTechMotor, TheTurnsAreTheFirstQuestionAfterASilence) {
+  comeOnline(0x2000, 2);
+  (void)told({.mode = ControlMode::kVelocity, .value = 60.0});
+  for (const int more : {0, 1}) {
+    hear(readingReply(0, 360, 0x2000));
+    for (int i = 0; i < 50 + more; ++i) (void)tick();
+    now_ += std::chrono::milliseconds{150};
+    const auto frames = tick();
+    ASSERT_EQ(frames.size(), 2U);
+    EXPECT_EQ(frames[0], "141#A100000000000000") << "until they are known";
+    EXPECT_EQ(frames[1], "141#9200000000000000");
+    hear(readingReply(0, 360, 0x2000));
+    hear(angleReply(76500));
+  }
+}
+
 TEST_F(LKTechMotor, ADriveThatIsOffWhileItIsToObeyIsAComplaint) {
   comeOnline();
   motor_->order(FrameKind::kPoll);

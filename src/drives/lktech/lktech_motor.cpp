@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/angle.hpp"
 #include "app/saturated.hpp"
@@ -30,6 +31,8 @@ constexpr double kSameAngleDeg = 1.0;
 constexpr double kShiftSeenDeg = 10.0;
 // A drive that has just started counts less than a turn, to either side.
 constexpr double kFreshCountDeg = kDegPerTurn + 1.0;
+// Its count is heard within this of its start; until then a shaft turns on.
+constexpr double kFreshForS = 0.1;
 // Encoder and count are two answers.
 constexpr double kInstantsApartS = 0.03;
 
@@ -111,10 +114,7 @@ void LKTech_Motor::takeReading(const CanFrame& frame) noexcept {
   if (torqueNmPerA() > 0.0F) feedback_.torque_nm = feedback_.current_a * torqueNmPerA();
   feedback_.velocity_rpm =
       static_cast<float>(toOutput(reading.rotor_deg_s / traits().gear_ratio) / kDegPerSPerRpm);
-  if (silence > traits().restart_silence && counted_) {
-    counted_ = false;
-    next_query_ = {};
-  }
+  if (silence > traits().restart_silence) doubtCount();
   if (counted_ && encoder_) {
     // Way at the mean of the speeds before and now; the turn is that of the nearest such angle.
     const float mean_rpm =
@@ -138,6 +138,19 @@ void LKTech_Motor::takeStatus(const CanFrame& frame) noexcept {
   if (!off_) answered(Step::kStatus);
 }
 
+// The turns are asked for at once.
+void LKTech_Motor::doubtCount() noexcept {
+  if (!std::exchange(counted_, false)) return;
+  next_query_ = {};
+  ask_turns_ = false;
+}
+
+// The drive may have started just now.
+bool LKTech_Motor::countsAfresh(double angle_deg) const noexcept {
+  const double deg_s = std::abs(toDrive(static_cast<double>(feedback_.velocity_rpm))) * kDegPerSPerRpm;
+  return std::abs(angle_deg) < kFreshCountDeg + deg_s * kFreshForS;
+}
+
 void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   const std::int64_t raw = lktech::decodeAngle(frame.payload());
   // A copy of a request has the angle 0. A drive at 0 sends it in every reply, a copy comes once.
@@ -149,7 +162,8 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   const double reach_deg = 4294967296.0 * lktech::kDegPerRaw / traits().gear_ratio;
   const double off_deg = shortestWay(position_deg_ + shift_deg_, angle_deg, reach_deg);
   if (!counted_ || std::abs(off_deg) > 180.0) {
-    const bool lost = was_counted_ && std::abs(off_deg) > 180.0;
+    // In a silence a drive that has not started may have turned as far.
+    const bool lost = was_counted_ && std::abs(off_deg) > 180.0 && (counted_ || countsAfresh(angle_deg));
     if (lost) {
       loseReference();
       restarted_ = restarted_ || obeying();
@@ -164,9 +178,10 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
       shift_known_ = std::abs(shift_deg) > std::max(kShiftSeenDeg, between_deg);
       shift_deg_ = shift_known_ ? shift_deg : 0.0;
     } else {
+      position_deg_ += off_deg;
       position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
       // Within half a turn of its last count it may have been restarted all the same.
-      if (std::abs(angle_deg) < kFreshCountDeg) doubtTurn();
+      if (countsAfresh(angle_deg)) doubtTurn();
     }
     counted_ = true;
     was_counted_ = true;
@@ -190,7 +205,7 @@ void LKTech_Motor::update(const Tick& tick) noexcept {
   if (enabling() && begins()) beginEnabling();
   if (std::exchange(clear_, false)) outbox_.add(lktech::request(id_, lktech::Code::kClear));
   // A drive that has just started must get no target in turns that it counted before.
-  if (!heard_ || tick.now - *heard_ > traits().restart_silence) counted_ = false;
+  if (!heard_ || tick.now - *heard_ > traits().restart_silence) doubtCount();
   due_ = due(tick);
   if (!due_) return;
 

@@ -49,6 +49,8 @@ class LKTech_Motor final : public SoloMotor {
   void takeReading(const CanFrame& frame) noexcept;
   void takeStatus(const CanFrame& frame) noexcept;
   void takeTurns(const CanFrame& frame) noexcept;
+  void doubtCount() noexcept;
+  [[nodiscard]] bool countsAfresh(double angle_deg) const noexcept;
   void answered(Step step) noexcept;
   [[nodiscard]] double encoderDeg(std::uint16_t raw) const noexcept;
 
