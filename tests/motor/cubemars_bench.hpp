@@ -49,6 +49,10 @@ class Bench {
     CanFrame frame = mitReply(rad, rad_s, nm, error);
     return motor_.updateFeedback(frame);
   }
+  /// Answers of a drive that stands at 0.
+  void answer(int times) {
+    for (int i = 0; i < times; ++i) (void)feedMit(0.0);
+  }
   /// This code of the position, standing.
   FrameVerdict feedCode(std::uint16_t code) {
     now_ += milliseconds{1};

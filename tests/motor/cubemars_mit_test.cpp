@@ -23,6 +23,7 @@ TEST(CubemarsMit, RestAndPollLeaveTheMode) {
   EXPECT_TRUE(bench.isNoTorque(out[0]));
   EXPECT_TRUE(isExit(out[1]));
   ASSERT_EQ(bench.tick(FrameKind::kRest).size(), 2U) << "the law in the drive is not known yet";
+  bench.answer(5);
   for (const auto kind : {FrameKind::kRest, FrameKind::kPoll, FrameKind::kDisable}) {
     const auto frames = bench.tick(kind);
     ASSERT_EQ(frames.size(), 1U);
@@ -36,12 +37,27 @@ TEST(CubemarsMit, NoLawOfItsOwnIsLeftInADriveThatLeavesTheMode) {
     (void)bench.feedMit(0.0);
     (void)bench.tick(FrameKind::kRest);
     (void)bench.tick(before);
-    const auto frames = bench.tick(FrameKind::kRest);
-    ASSERT_EQ(frames.size(), 2U);
-    EXPECT_TRUE(bench.isNoTorque(frames[0]));
-    EXPECT_TRUE(isExit(frames[1]));
+    for (int answers = 0; answers < 5; ++answers) {
+      const auto frames = bench.tick(answers % 2 == 0 ? FrameKind::kRest : FrameKind::kPoll);
+      ASSERT_EQ(frames.size(), 2U) << "they may have been held back";
+      EXPECT_TRUE(bench.isNoTorque(frames[0]));
+      EXPECT_TRUE(isExit(frames[1]));
+      bench.answer(1);
+    }
     EXPECT_EQ(bench.tick(FrameKind::kPoll).size(), 1U);
   }
+}
+
+TEST(CubemarsMit, NoTorqueFollowsInTheTickAfterEnteringWhateverTheRhythmOfCommands) {
+  auto settings = mit();
+  settings.command_divider = 20;
+  Mit bench(settings);
+  (void)bench.feedMit(0.0);
+  ASSERT_EQ(bench.tick(FrameKind::kEnable).size(), 3U);
+  const auto frames = bench.tick();
+  ASSERT_EQ(frames.size(), 1U) << "the last of the three may not have left";
+  EXPECT_TRUE(bench.isNoTorque(frames[0]));
+  EXPECT_TRUE(bench.tick().empty());
 }
 
 TEST(CubemarsMit, IdleHasNoGainsAndNoTorque) {
@@ -112,7 +128,10 @@ TEST(CubemarsMit, ClearingEntersWithoutTorqueAndLeavesAgain) {
   EXPECT_TRUE(isEnter(frames[1]));
   EXPECT_TRUE(bench.isNoTorque(frames[2]));
   EXPECT_TRUE(isExit(frames[3]));
-  EXPECT_TRUE(isExit(bench.tick().front())) << "once only";
+  const auto rest = bench.tick();
+  ASSERT_EQ(rest.size(), 2U) << "once only";
+  EXPECT_TRUE(bench.isNoTorque(rest[0]));
+  EXPECT_TRUE(isExit(rest[1]));
 }
 
 TEST(CubemarsMit, CurrentIsTorqueOfTheModelsConstant) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -403,6 +404,10 @@ TEST(CubemarsLoops, AMotorThatIsEnabledAnewDoesNotGoOnToItsOldTarget) {
 
 class LawOfAnotherProgram : public ::testing::Test {
  protected:
+  static bool isOrder(const CanFrame& frame, cubemars::MitOrder order) {
+    const CanFrame expected = cubemars::mitOrderFrame(12, order);
+    return frame.id == expected.id && frame.data == expected.data;
+  }
   /// Ended without a rest: 6 N·m, then out of the mode.
   void SetUp() override {
     sim::MotorLoad load;
@@ -456,6 +461,43 @@ TEST_F(LawOfAnotherProgram, IsNotLeftBehindByARest) {
   rig_.drive().receive(cubemars::mitOrderFrame(12, cubemars::MitOrder::kEnter));
   rig_.drive().step(milliseconds{20});
   EXPECT_NEAR(rig_.currentA(), 0.0, 0.05);
+}
+
+// The bus carries nothing from before the stop until the drive is at rest for us.
+TEST_F(LawOfAnotherProgram, IsNotLeftBehindByARestThatWasHeldBack) {
+  rig_.comeOnline();
+  ASSERT_TRUE(rig_.enable());
+  rig_.command({.mode = ControlMode::kCurrent, .value = 4.0});
+  run(milliseconds{50});
+  rig_.cut(true);
+  run(milliseconds{20});
+  rig_.motor().order(FrameKind::kPoll);
+  run(milliseconds{50});
+  rig_.cut(false);
+  (void)rig_.takeSent();
+  run(milliseconds{50});
+  EXPECT_FALSE(isOrder(rig_.takeSent().front(), cubemars::MitOrder::kExit)) << "no torque leaves before it";
+  rig_.drive().receive(cubemars::mitOrderFrame(12, cubemars::MitOrder::kEnter));
+  rig_.drive().step(milliseconds{20});
+  EXPECT_NEAR(rig_.currentA(), 0.0, 0.05);
+}
+
+TEST_F(LawOfAnotherProgram, ActsForNoMoreThanATickWhenTheEnteringIsCutShort) {
+  auto settings = settingsOf({"AK80-9", "mit"});
+  settings.command_divider = 20;
+  SoloRig seldom = rigOf(settings);
+  std::swap(rig_, seldom);
+  SetUp();
+  rig_.motor().order(FrameKind::kPoll);
+  run(milliseconds{50});
+  bool entered = false;
+  rig_.lose([&entered](const CanFrame& frame) {
+    return std::exchange(entered, isOrder(frame, cubemars::MitOrder::kEnter));
+  });
+  rig_.motor().order(FrameKind::kEnable);
+  int pulled_ms = 0;
+  rig_.run(milliseconds{49}, [&] { pulled_ms += rig_.currentA() > 0.05 ? 1 : 0; });
+  EXPECT_LE(pulled_ms, 2);
 }
 
 TEST(CubemarsLoops, MoreTurnsThanItsPositionFieldAreCounted) {

@@ -20,6 +20,8 @@ constexpr Duration kMitStepPatience = std::chrono::milliseconds{50};
 constexpr int kMitAttempts = 6;  // the first, and five more
 // The answers to "no torque", "enter" and "no torque", and one that was under way before them.
 constexpr std::uint64_t kAnswersToEnter = 4;
+// Those to "no torque" and "leave", twice, and one that was under way before them.
+constexpr std::uint64_t kAnswersToRest = 5;
 constexpr double kMitDampShare = 0.25;  // of the damping of brake
 // Share of the torque of a spring one turn of the field away (at most the whole range) that counts as a pull
 // the other way: delay and resolution of the report hide the rest.
@@ -309,16 +311,24 @@ CanFrame CubemarsMit::commandFrame(const SpringLaw& law) const noexcept {
 std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) noexcept {
   if (out.size() < kMaxFramesPerPacker) return 0;
   if (clear_now_ || enter_now_) return packEnter(out);
-  if (!due(tick)) return 0;
+  // The last frame of that may not have left.
+  const bool behind_enter = std::exchange(entered_, false);
+  if (!due(tick) && !behind_enter) return 0;
   if (!enabling() && !obeying()) {
-    if (v3_ || !std::exchange(at_rest_, true)) return packRest(out);
+    if (v3_ || !leftAtRest()) return packRest(out);
     out[0] = cubemars::mitOrderFrame(driveId(), MitOrder::kExit);  // the drive answers this one too
     return 1;
   }
-  at_rest_ = false;
+  samples_before_rest_.reset();
   out[0] = commandFrame(enabling() ? SpringLaw{} : command_);
   sent_ = {enabling() ? SpringLaw{} : command_, sent_[0]};
   return 1;
+}
+
+// What is packed may be held back, and only an answer tells that it was not.
+bool CubemarsMit::leftAtRest() noexcept {
+  if (!samples_before_rest_) samples_before_rest_ = feedback_.samples;
+  return feedback_.samples >= *samples_before_rest_ + kAnswersToRest;
 }
 
 std::size_t CubemarsMit::packEnter(std::span<CanFrame> out) noexcept {
@@ -326,9 +336,10 @@ std::size_t CubemarsMit::packEnter(std::span<CanFrame> out) noexcept {
   frames.add(commandFrame({}));
   frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kEnter));
   frames.add(commandFrame({}));
-  at_rest_ = clear_now_ && !enter_now_;
-  if (at_rest_) frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kExit));
+  samples_before_rest_.reset();
+  if (!enter_now_) frames.add(cubemars::mitOrderFrame(driveId(), MitOrder::kExit));
   clear_now_ = false;
+  entered_ = true;
   return frames.copyTo(out);
 }
 

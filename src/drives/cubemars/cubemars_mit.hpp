@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 
 #include "drives/cubemars/cubemars_motor.hpp"
 #include "motor/enable_sequence.hpp"
@@ -16,7 +18,7 @@ namespace rc10 {
 /// always and speak unasked.
 ///
 /// The last law may stay in a drive that leaves the mode, and act again when it enters; outside of it a drive
-/// ignores laws. So "no torque" goes before leaving and behind entering.
+/// ignores laws. So "no torque" goes before leaving, until both are answered, and behind entering.
 ///
 /// effortLimit() bounds the sum that the drive will make of a command, as far as the last feedback tells;
 /// without feedback for longestGap() nothing but "no torque" is sent. Scheduler thread only.
@@ -53,7 +55,8 @@ class CubemarsMit : public CubeMars_Motor {
   void watchSpring(const cubemars::MitReport& report) noexcept;
   [[nodiscard]] bool pullsOtherwise() const noexcept;
   [[nodiscard]] bool limited() const noexcept;
-  /// A turn of the field that is not known makes every angle wrong, but a wheel without limits may count anew.
+  /// A turn of the field that is not known makes every angle wrong, but a wheel without limits may count
+  /// anew.
   [[nodiscard]] bool refusesZeros() const noexcept { return turns_unknown_ && limited(); }
   [[nodiscard]] SpringLaw lawOf(const Target& target, MonotonicTime now) noexcept;
   [[nodiscard]] SpringLaw velocityLaw(double output_rpm, double torque_ff_nm, double gain) noexcept;
@@ -63,6 +66,8 @@ class CubemarsMit : public CubeMars_Motor {
   void send(const SpringLaw& wanted_law) noexcept;
   void release() noexcept;
   [[nodiscard]] std::size_t packEnter(std::span<CanFrame> out) noexcept;
+  /// The law in the drive is "no torque", and it has left the mode.
+  [[nodiscard]] bool leftAtRest() noexcept;
   [[nodiscard]] double boundRpm(double wanted_rpm) noexcept;
   [[nodiscard]] double driveRadS(double output_rpm) const noexcept;
   [[nodiscard]] double limitRadS() const noexcept;  ///< 0: none.
@@ -96,7 +101,9 @@ class CubemarsMit : public CubeMars_Motor {
   EnableSequence<Step> enabling_;
   bool enter_now_ = false;
   bool clear_now_ = false;
-  bool at_rest_ = false;              ///< The law in the drive is "no torque", and it has left the mode.
+  bool entered_ = false;  ///< The last frames were those that enter the mode.
+  /// Count of answers when it was first told to leave the mode.
+  std::optional<std::uint64_t> samples_before_rest_;
   std::uint64_t samples_before_ = 0;  ///< Count when it was first told to enter the mode.
 };
 

@@ -59,7 +59,7 @@ class VescInquiry {
   std::uint32_t pending_ = 0;  ///< Asked, not yet answered.
   std::uint32_t next_ = vesc::kAskStatus;
   int unanswered_ = 0;
-  int ignored_ = 0;  ///< Questions since its last answer after which it spoke.
+  int ignored_ = 0;          ///< Questions since its last answer after which it spoke.
   std::uint32_t fresh_ = 0;  ///< Answers since the enabling began.
   Proof proof_ = Proof::kOpen;
   bool begun_ = false;

@@ -41,14 +41,15 @@ TEST_P(LongPause, LeavesAMotorActiveWithItsReferenceAndItsBrakeActs) {
   EXPECT_NEAR(apart(), apart_deg, 0.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LongPause,
-                         ::testing::Combine(::testing::Values(Counter{"Lktech", "model: LK-MF9025, id: 1", 300.0},
-                                                              Counter{"LktechGeared", "model: LK-MG5010E-i10, id: 2", 150.0},
-                                                              Counter{"MyActuator", "model: RMD-X8-20, id: 3", 60.0}),
-                                            ::testing::Values(105U, 150U, 300U, 1000U)),
-                         [](const auto& each) {
-                           return std::string{std::get<0>(each.param).name} + std::to_string(std::get<1>(each.param));
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, LongPause,
+    ::testing::Combine(::testing::Values(Counter{"Lktech", "model: LK-MF9025, id: 1", 300.0},
+                                         Counter{"LktechGeared", "model: LK-MG5010E-i10, id: 2", 150.0},
+                                         Counter{"MyActuator", "model: RMD-X8-20, id: 3", 60.0}),
+                       ::testing::Values(105U, 150U, 300U, 1000U)),
+    [](const auto& each) {
+      return std::string{std::get<0>(each.param).name} + std::to_string(std::get<1>(each.param));
+    });
 
 }  // namespace
 }  // namespace rc10::test::axis_long_pause_test
