@@ -40,7 +40,7 @@ def stands_without_torque(motor: Motor) -> bool:
 
 @contextlib.contextmanager
 def copy_as(daemon: Daemon, copy: str) -> Iterator[None]:
-    """What rc10ctl sees of the file with which the robot started."""
+    """The file with which the robot started, as rc10ctl sees it."""
     path = daemon.run_dir / "host.config"
     text = path.read_text()
     if copy == "not readable":

@@ -42,9 +42,9 @@ typedef struct {
   int8_t status;    // of that answer, -1: none yet
   bool enabled;     // by us
   int64_t commanded_us;
-  int64_t state_us;  // of the newest state, with
-  char owner[32];    // who commands the motor, and
-  int8_t stop_cause;
+  int64_t state_us;   // time of the newest state
+  char owner[32];     // client that commands the motor, by that state
+  int8_t stop_cause;  // cause of its last stop
   char stopped[128];  // by whom or by what
   int64_t printed_us;
 } program_t;

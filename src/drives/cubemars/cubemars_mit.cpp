@@ -325,7 +325,7 @@ std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
   return 1;
 }
 
-// What is packed may be held back, and only an answer tells that it was not.
+// A frame that is packed may be held back: only an answer tells that it was not.
 bool CubemarsMit::leftAtRest() noexcept {
   if (!samples_before_rest_) samples_before_rest_ = feedback_.samples;
   return feedback_.samples >= *samples_before_rest_ + kAnswersToRest;

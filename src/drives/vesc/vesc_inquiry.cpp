@@ -86,7 +86,7 @@ void VescInquiry::ask(const Tick& tick) noexcept {
   if (!hurry && tick.now - asked_ < every) return;
   if (!answered) {
     ++unanswered_;
-    // Of a drive that is silent, too, it says nothing.
+    // A drive that is silent, too, shows nothing by that.
     if (spoke_) ++ignored_;
   }
   spoke_ = false;

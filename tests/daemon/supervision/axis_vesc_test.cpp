@@ -1,15 +1,12 @@
 // A VESC obeys whatever it hears: by its answers and its watchdog alone it shows that it hears.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 
 #include "daemon/supervision/one_motor.hpp"
 
 namespace rc10::test::axis_vesc_test {
 namespace {
-
-using namespace std::chrono_literals;
 
 const std::string kVesc =
     "model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, feedback_hz: 500, kv_rpm_per_v: 100";

@@ -246,6 +246,8 @@ TEST_F(JointOfARobot, AHomingThatCannotSucceedDoesNotBeginAndLeavesTheSoftLimits
   (void)robot->order(Operation::kDisable);
   run(100);
   enable();
+  robot->hold(kArm, {.mode = ControlMode::kVelocity, .value = -20.0}, 1500);
+  run(100);
   home();
   EXPECT_EQ(state(), kFollowing) << "enabled anew it homes";
 }

@@ -23,7 +23,7 @@ class ModuleEndingTest : public ModuleRunnerTest {
     robot_->run(1000);
     ASSERT_FALSE(follows());
   }
-  /// What `acts` goes on in each tick.
+  /// Nothing but `acts`, in each tick.
   void expectNothingBegins(Acting acts) {
     for (int i = 0; i < 100; ++i) {
       robot_->tick();
