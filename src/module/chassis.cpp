@@ -26,6 +26,7 @@ Result<std::unique_ptr<Module_Base>> make(const OwnValues& own, const RobotOutli
                                           std::span<const OwnKey> names, const Kinematics& kinematics) {
   const auto motors = motorsOf(own, "wheels", names, ControlMode::kVelocity, robot);
   if (!motors) return tl::unexpected(motors.error());
+  if (auto powered = checkPowerLimit(own, *motors, robot); !powered) return tl::unexpected(powered.error());
   const auto limit_rpm = wheelLimit(own, *motors, robot);
   if (!limit_rpm) return tl::unexpected(limit_rpm.error());
   std::array<std::size_t, Wheels::kAll.size()> places{};

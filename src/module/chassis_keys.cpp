@@ -32,6 +32,19 @@ Result<std::vector<std::size_t>> motorsOf(const OwnValues& own, std::string_view
   return motors;
 }
 
+Result<void> checkPowerLimit(const OwnValues& own, const std::vector<std::size_t>& motors,
+                             const RobotOutline& robot) {
+  if (!(own.number("power_limit_w") > 0.0)) return {};
+  for (const auto motor : motors) {
+    const auto& wheel = robot.motors[motor];
+    if (wheel.unreported_torque_remedy.empty()) continue;
+    return fail("power_limit_w: motor '" + wheel.name +
+                "' reports no torque, of which the power is computed: the limit would never act; " +
+                std::string{wheel.unreported_torque_remedy} + ", or remove it");
+  }
+  return {};
+}
+
 Result<double> wheelLimit(const OwnValues& own, const std::vector<std::size_t>& motors,
                           const RobotOutline& robot) {
   const double limit_rpm = lowestLimitRpm(robot, motors);

@@ -60,6 +60,10 @@ inline constexpr std::array kCornerKeys{
                                                         std::span<const OwnKey> names, ControlMode mode,
                                                         const RobotOutline& robot);
 
+/// An error if power_limit_w could not act: the torque of one of the motors is not known.
+[[nodiscard]] Result<void> checkPowerLimit(const OwnValues& own, const std::vector<std::size_t>& motors,
+                                           const RobotOutline& robot);
+
 /// wheel_limit_rpm, or what the slowest of the motors can be told.
 [[nodiscard]] Result<double> wheelLimit(const OwnValues& own, const std::vector<std::size_t>& motors,
                                         const RobotOutline& robot);

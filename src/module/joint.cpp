@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "app/units.hpp"
 #include "module/held_back.hpp"
 #include "module/joint_homing.hpp"
+#include "module/joint_homing_check.hpp"
 
 namespace rc10 {
 namespace {
@@ -27,7 +29,7 @@ constexpr double kRestShare = 0.02;
 // tolerances, where an encoder is coarse.
 constexpr double kLeadSeconds = 0.1;
 constexpr double kLeadTolerances = 10.0;
-// A motor that is waited for moves by a tolerance within this time, or is blocked.
+// A motor that is waited for comes nearer by a tolerance within this time, or is blocked.
 constexpr Duration kBlocked = std::chrono::milliseconds{200};
 // A target beyond the limits is reported again after this time without one.
 constexpr Duration kBeyondAgain = std::chrono::seconds{1};
@@ -251,6 +253,7 @@ class Joint : public Module_Base {
         lead_deg_(leadOf(own)),
         tolerance_deg_(own.number("tolerance_deg")),
         settle_(std::chrono::milliseconds{own.integer("settle_ms")}),
+        blocked_s_(static_cast<double>(seconds(std::max(settle_, kBlocked)))),
         homes_(own.text("homing") != "none"),
         home_angle_deg_(own.number("home_angle_deg")),
         holds_(own.text("on_silence") == "hold"),
@@ -438,7 +441,9 @@ class Joint : public Module_Base {
     if (target_deg == target_deg_ && move_ != Move::kNone) return;
     target_deg_ = target_deg;
     move_ = Move::kUnderWay;
-    arrived_ = advanced_ = tick.now;
+    arrived_ = tick.now;
+    closest_deg_ = std::numeric_limits<double>::infinity();
+    waited_s_ = 0.0;
   }
 
   // A reference that went on while the motor is blocked would make it leap all of that way, once it is
@@ -450,9 +455,13 @@ class Joint : public Module_Base {
     const double ahead_deg = sign * (reference.position - here_deg);
     const bool waits = ahead_deg > lead_deg_ && !reference_.restsAt(target_deg_);
     waited_ = waits || (waited_ && ahead_deg > lead_deg_ / 2);
-    if (!waited_ || std::fabs(here_deg - advanced_deg_) > tolerance_deg_) {
-      advanced_ = tick.now;
-      advanced_deg_ = here_deg;
+    // A blocked shaft may shake: one that is nearer to its target than ever since has advanced.
+    const double away_deg = std::fabs(target_deg_ - here_deg);
+    if (away_deg < closest_deg_ - tolerance_deg_) {
+      closest_deg_ = away_deg;
+      waited_s_ = 0.0;
+    } else if (waited_) {
+      waited_s_ += static_cast<double>(tick.dt_s);
     }
     if (waits) {
       const double deg_s = sign * static_cast<double>(feedback.velocity_rpm) * kDegPerSPerRpm;
@@ -474,7 +483,7 @@ class Joint : public Module_Base {
     }
     if (rests && away_deg <= tolerance_deg_) {
       move_ = Move::kDone;
-    } else if (tick.now - arrived_ >= settle_ || tick.now - advanced_ >= std::max(settle_, kBlocked)) {
+    } else if (tick.now - arrived_ >= settle_ || waited_s_ >= blocked_s_) {
       move_ = Move::kFailed;
       robot.report(kNotReached);
     }
@@ -487,6 +496,7 @@ class Joint : public Module_Base {
   double lead_deg_;
   double tolerance_deg_;
   Duration settle_;
+  double blocked_s_;
   bool homes_;
   double home_angle_deg_;
   bool holds_;
@@ -507,34 +517,9 @@ class Joint : public Module_Base {
   MonotonicTime arrived_{};              ///< When the reference came to rest at the target, or the
   double nearest_deg_ = 0.0;             ///< motor nearer to it than so.
   bool waited_ = false;                  ///< The reference waits, or has not gone on far since.
-  MonotonicTime advanced_{};             ///< When it did not, or the motor moved.
-  double advanced_deg_ = 0.0;            ///< Place of the motor then.
+  double waited_s_ = 0.0;                ///< Time of that in all, while the motor came no nearer
+  double closest_deg_ = 0.0;             ///< than this.
 };
-
-// Combinations of values with which no end can be found, though each is in its range.
-Result<void> checkHoming(const OwnValues& own, const RobotOutline::Motor& motor) {
-  const double rpm = own.number("homing_velocity_rpm");
-  if (rpm == 0.0) return fail("homing_velocity_rpm: 0 finds nothing; its sign says where the end is");
-  const auto limit_rpm = static_cast<double>(motor.velocity_limit_rpm);
-  if (limit_rpm > 0.0 && std::fabs(rpm) > limit_rpm)
-    return fail("homing_velocity_rpm: is more than motor '" + motor.name +
-                "' turns; use less, see its velocity_limit_rpm and gear_ratio");
-  const auto limit_a = static_cast<double>(motor.current_limit_a);
-  if (limit_a > 0.0 && own.number("homing_current_a") > limit_a)
-    return fail("homing_current_a: is more than current_limit_a of motor '" + motor.name +
-                "'; the stop is pressed with all of it, so use less");
-  if (own.number("homing_away_deg") <= own.number("homing_tolerance_deg"))
-    return fail(
-        "homing_away_deg: must be more than homing_tolerance_deg, or a second meeting with the end shows "
-        "nothing");
-  const double home_deg = own.number("home_angle_deg");
-  const bool behind = rpm < 0.0 ? home_deg >= motor.angle_max_deg : home_deg <= motor.angle_min_deg;
-  if (behind)
-    return fail(std::string{"home_angle_deg: no travel lies between it and "} +
-                (rpm < 0.0 ? "angle_max_deg" : "angle_min_deg") + " of motor '" + motor.name +
-                "'; see the sign of homing_velocity_rpm, which says where the end is");
-  return {};
-}
 
 class JointType : public ModuleType {
  public:

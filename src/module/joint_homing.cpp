@@ -159,7 +159,7 @@ JointHoming::Standstill JointHoming::standstill(const Measured& measured, double
     most_a_ = pushed_a;
   }
   if (measured.received - moved_ < config_.stopped) return Standstill::kNone;
-  if (std::isnan(pushed_a) || pushed_a >= kPressed * config_.current_a) return Standstill::kPressed;
+  if (pushed_a >= kPressed * config_.current_a) return Standstill::kPressed;  // NaN never is
   return measured.received - rose_ >= config_.stopped + kPatience ? Standstill::kGivenUp : Standstill::kNone;
 }
 

@@ -9,6 +9,7 @@
 
 #include "app/result.hpp"
 #include "app/target.hpp"
+#include "app/time.hpp"
 #include "module/module_base.hpp"
 #include "motor/own_key.hpp"
 #include "motor/own_values.hpp"
@@ -28,6 +29,10 @@ struct RobotOutline {
     float current_limit_a = 0.0F;     ///< 0: not known, or its effort is no current.
     double angle_min_deg = 0.0;       ///< Its soft limits; infinite: none.
     double angle_max_deg = 0.0;
+    Duration current_period{};  ///< Period of the current that its drive reports.
+    /// See MotorTraits; empty: it reports its current, its torque.
+    std::string_view unreported_current_remedy{};
+    std::string_view unreported_torque_remedy{};
   };
   std::vector<Motor> motors;
   int tick_hz = 1000;

@@ -106,6 +106,10 @@ class SwerveChassisType : public ChassisType {
       if (std::find(drives->begin(), drives->end(), motor) != drives->end())
         return fail("steer: motor '" + robot.motors[motor].name + "' drives a wheel already; name another");
     }
+    for (const auto* motors : {&*drives, &*steerings}) {
+      if (auto powered = checkPowerLimit(own, *motors, robot); !powered)
+        return tl::unexpected(powered.error());
+    }
     const auto limit_rpm = wheelLimit(own, *drives, robot);
     if (!limit_rpm) return tl::unexpected(limit_rpm.error());
     Motors drive_places{};

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/time.hpp"
 #include "motor/cascade.hpp"
 #include "motor/first_angle.hpp"
 #include "motor/own_values.hpp"
@@ -46,6 +47,15 @@ template <typename Settings, typename Traits>
 template <typename Settings>
 [[nodiscard]] constexpr float effortLimitOf(const Settings& settings, float full_scale) noexcept {
   return settings.effort_limit > 0.0F ? settings.effort_limit : full_scale;
+}
+
+/// Period of the reported current. A drive that is asked tells it in each answer, its angle perhaps not.
+template <typename Traits>
+[[nodiscard]] constexpr Duration currentPeriodOf(const MotorSettings& settings,
+                                                 const Traits& model) noexcept {
+  if (model.signed_current_hz > 0) return periodOf(model.signed_current_hz);
+  if (model.asked) return settings.command_divider * periodOf(settings.tick_hz);
+  return periodOf(settings.feedback_hz);
 }
 
 }  // namespace rc10

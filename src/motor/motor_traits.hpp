@@ -55,6 +55,9 @@ struct MotorTraits {
   /// Remedy, in words, where a loop of the drive may be at a limit of its current that is not seen; empty:
   /// seen.
   std::string_view unseen_limit_remedy{};
+  /// Remedies, in words, where it reports no current with a sign, or no torque; empty: it does.
+  std::string_view unreported_current_remedy{};
+  std::string_view unreported_torque_remedy{};
   /// Modes whose loop obeys the drive's own maximum of the current, not current_limit_a.
   ModeSet own_loops{};
   /// Key that tells that maximum: what is set on the drive, or current_limit_a, which is to be no higher.

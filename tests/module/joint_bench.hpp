@@ -89,10 +89,13 @@ class JointBench : public ::testing::Test {
       feedback.total_angle_deg = motor.target->value;
     if (motor.target && motor.target->mode == ControlMode::kCurrent && !blocked_) {
       flows_a_ += std::clamp(motor.target->value * gets_ - flows_a_, -slew_a_, slew_a_);
-      feedback.current_a = static_cast<float>(flows_a_);
+      feedback.current_a = tells_current_ ? static_cast<float>(flows_a_) : std::nanf("");
       rpm_ += ((flows_a_ + gravity_a_) * 400.0 - 5.0 * rpm_) * 0.001;
       if (std::fabs(flows_a_ + gravity_a_) < friction_a_) rpm_ = 0.0;
-      feedback.total_angle_deg = std::clamp(before_deg + rpm_ * 0.006, stop_deg_, far_deg_);
+      const bool stuck_at_place = before_deg >= stiff_deg_ && flows_a_ > -stiff_a_;
+      feedback.total_angle_deg =
+          std::clamp(before_deg + rpm_ * 0.006, stuck_at_place ? stiff_deg_ : stop_deg_, far_deg_);
+      if (feedback.total_angle_deg == stiff_deg_) rpm_ = std::max(rpm_, 0.0);
       if (feedback.total_angle_deg == stop_deg_ || feedback.total_angle_deg == far_deg_) rpm_ = 0.0;
     }
     feedback.velocity_rpm = static_cast<float>((feedback.total_angle_deg - before_deg) / 0.006);
@@ -121,6 +124,9 @@ class JointBench : public ::testing::Test {
   double far_deg_ = 1e6;     ///< Its other stop.
   double slew_a_ = 1e6;      ///< Change of the current in a tick.
   double friction_a_ = 0.0;  ///< Less than this does not move it.
+  double stiff_deg_ = -1e6;  ///< A place that it passes towards the stop
+  double stiff_a_ = 0.0;     ///< by as much.
+  bool tells_current_ = true;
   bool blocked_ = false;
   bool stuck_ = false;  ///< The switch stays closed.
   bool switch_heard_ = true;

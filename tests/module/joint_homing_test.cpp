@@ -262,6 +262,48 @@ TEST_F(HomingJoint, ACurrentThatRisesSlowlyIsWaitedFor) {
   EXPECT_NEAR(angle(), -30.0, 0.01);
 }
 
+TEST_F(HomingJoint, AStiffPlaceIsNoStopHoweverItsCurrentRisesAndWhoeverKnowsIt) {
+  struct Case {
+    bool told;
+    double share;  ///< Share of the current; a half does not pass the place.
+    double slew_a;
+  };
+  for (const double slew_a : {0.0005, 1e6}) {
+    for (const auto& each : {Case{true, 1.0, slew_a}, Case{true, 0.5, slew_a}, Case{false, 1.0, slew_a},
+                             Case{false, 0.5, slew_a}}) {
+      SCOPED_TRACE(::testing::Message() << each.told << ", share " << each.share << ", slew " << slew_a);
+      buildHoming("stop", 30.0);
+      events_.clear();
+      rpm_ = flows_a_ = 0.0;
+      robot_.motor(0).feedback.total_angle_deg = 40.0;
+      stop_deg_ = 0.0;
+      stiff_deg_ = 20.0;
+      stiff_a_ = 0.3;
+      slew_a_ = each.slew_a;
+      gets_ = each.share;
+      tells_current_ = each.told;
+      ask(kNoSignal, 1.0);
+      run(1);
+      for (int i = 0; i < 31'000 && state() == kHoming; ++i) run(1);
+      const bool found = each.told && each.share == 1.0;
+      EXPECT_EQ(state(), found ? kFollowing : kHomingFailed);
+      EXPECT_THAT(events_, ElementsAre(found ? 0U : 5U));
+      EXPECT_EQ(robot_.motor(0).feedback.zeroed, found);
+      if (found) {
+        EXPECT_NEAR(stop_deg_, -30.0, 0.01) << "the end, and not the place before it";
+      }
+    }
+  }
+}
+
+TEST_F(HomingJoint, FindsASwitchFromItsFarEndWithADriveThatTellsNoCurrent) {
+  buildHoming("switch", 10.0);
+  tells_current_ = false;
+  far_deg_ = robot_.motor(0).feedback.total_angle_deg = 40.0;
+  homeOnce();
+  EXPECT_NEAR(angle(), -30.0, 0.6);
+}
+
 TEST(JointHoming, TheSpeedOfReducedModeIsNoStandstillAndIsNotPushedAgainst) {
   JointHoming homing{
       {.velocity_rpm = -10.0, .current_a = 0.5, .away_deg = 20.0, .stopped = 200ms, .timeout = 10s}};
@@ -333,6 +375,28 @@ TEST(JointHoming, ALightAxisIsNotThrownByFeedbackThatComesSlowly) {
     EXPECT_EQ(progress, JointHoming::Progress::kFound) << every_ms << " ms";
     EXPECT_LT(axis.fastest_rpm, 20.0) << every_ms << " ms";
   }
+}
+
+TEST(JointHoming, AGapOfTheCurrentIsWaitedForAndIsNoFullCurrent) {
+  JointHoming homing(
+      {.velocity_rpm = -10.0, .current_a = 4.0, .away_deg = 5.0, .stopped = 100ms, .timeout = 10s});
+  LightAxis axis;
+  JointHoming::Measured measured;
+  homing.start(measured);
+  auto progress = JointHoming::Progress::kUnderWay;
+  int told = 0;
+  for (int ms = 1; progress == JointHoming::Progress::kUnderWay; ++ms) {
+    axis.step(homing.current());
+    measured.received = measured.now += 1ms;
+    measured.total_angle_deg = axis.deg;
+    measured.velocity_rpm = axis.rpm;
+    const bool gap = ms % 800 != 0;
+    measured.current_a = gap ? std::numeric_limits<double>::quiet_NaN() : homing.current();
+    if (!gap && axis.deg == -40.0) ++told;
+    progress = homing.step(measured);
+  }
+  EXPECT_EQ(progress, JointHoming::Progress::kFound);
+  EXPECT_GE(told, 2) << "once for each meeting with the end";
 }
 
 TEST_F(HomingJoint, AZeroThatItsMotorRefusesIsNoHome) {

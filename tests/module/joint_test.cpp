@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -177,6 +178,43 @@ TEST_F(Joint, TheReferenceWaitsForAMotorThatIsHeldAndGoesOnWithIt) {
   EXPECT_EQ(angle(), 90.0);
 }
 
+TEST_F(Joint, AMoveOfAHeldShaftThatShakesHasFailed) {
+  for (const double amplitude_deg : {0.9, 1.2, 3.0, 6.0}) {
+    for (const double hz : {0.5, 2.0, 10.0}) {
+      SCOPED_TRACE(::testing::Message() << amplitude_deg << " deg, " << hz << " Hz");
+      build(jointSettings());
+      events_.clear();
+      blocked_ = true;
+      ask(90.0);
+      for (int i = 0; i < 10'000 && (i == 0 || moved() == kUnderWay); ++i) {
+        run(1);
+        auto& feedback = robot_.motor(0).feedback;
+        const double before_deg = feedback.total_angle_deg;
+        feedback.total_angle_deg = amplitude_deg * std::sin(2.0 * std::numbers::pi * hz * 0.001 * i);
+        feedback.velocity_rpm = static_cast<float>((feedback.total_angle_deg - before_deg) / 0.006);
+      }
+      EXPECT_EQ(moved(), kFailed);
+      EXPECT_THAT(events_, ElementsAre(2U));
+    }
+  }
+}
+
+TEST_F(Joint, AMotorThatIsPushedBackForAMomentHasNotFailed) {
+  build(jointSettings());
+  ask(90.0);
+  run(700);
+  ASSERT_GT(angle(), 30.0);
+  blocked_ = true;
+  for (int i = 0; i < 150; ++i) {
+    run(1);
+    robot_.motor(0).feedback.total_angle_deg -= 0.2;
+  }
+  blocked_ = false;
+  run(3000);
+  EXPECT_EQ(moved(), kDone);
+  EXPECT_THAT(events_, IsEmpty());
+}
+
 TEST_F(Joint, AMotorThatIsOnlySlowHasNotFailed) {
   build(jointSettings());
   blocked_ = true;
@@ -219,6 +257,33 @@ TEST_F(Joint, TellsOnceOfAllTargetsOfAStickBeyondTheLimit) {
     run(1);
   }
   EXPECT_THAT(events_, ElementsAre(3U));
+}
+
+TEST(JointType, RefusesAStopWhoseCurrentIsNotSeen) {
+  auto own = jointSettings();
+  auto robot = outlineOf(1);
+  const auto refusal = [&] {
+    const auto built = jointType().build(own, robot);
+    return built ? std::string{} : built.error().message;
+  };
+  robot.motors[0].unreported_current_remedy = "write telemetry_hz";
+  EXPECT_EQ(refusal(), "") << "it does not home";
+  own.own.set("homing", std::string{"stop"});
+  EXPECT_EQ(refusal(),
+            "homing: motor 'motor0' does not report its current, without which friction and gravity are not "
+            "told from the stop; write telemetry_hz, or use homing: switch");
+  own.own.set("homing", std::string{"switch"});
+  own.own.set("switch", std::string{"limit.closed"});
+  EXPECT_EQ(refusal(), "") << "the switch says where the end is";
+  own = jointSettings();
+  own.own.set("homing", std::string{"stop"});
+  robot = outlineOf(1);
+  robot.motors[0].current_period = 51ms;  // homing_stopped_ms is 100
+  EXPECT_EQ(refusal(),
+            "homing_stopped_ms: is shorter than two reports of the current of motor 'motor0'; write 102 or "
+            "more, or let it come more often");
+  robot.motors[0].current_period = 50ms;
+  EXPECT_EQ(refusal(), "");
 }
 
 TEST(JointType, RefusesWhatCannotWork) {

@@ -75,13 +75,7 @@ void checkFollowingError(MotorParse& in) {
       "needs angle_slew_deg_per_s: without it every step of the target would be a fault; add it");
 }
 
-/// Period of the reported current. A drive that is asked tells it in each answer, its angle perhaps not.
-Duration currentPeriod(const MotorParse& in) {
-  if (in.traits.signed_current_hz > 0) return periodOf(in.traits.signed_current_hz);
-  const MotorSettings& motor = in.motor();
-  if (in.traits.asked) return motor.command_divider * periodOf(motor.tick_hz);
-  return periodOf(motor.feedback_hz);
-}
+Duration currentPeriod(const MotorParse& in) { return currentPeriodOf(in.motor(), in.traits); }
 
 void checkStall(MotorParse& in) {
   const auto given = in.settings.find("stall_ms");

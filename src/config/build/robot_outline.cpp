@@ -20,7 +20,10 @@ RobotOutline outlineOf(const RobotConfig& robot) {
                                   ? effortLimitOf(motor.settings, traits.effort_full_scale)
                                   : 0.0F,
            .angle_min_deg = motor.shaping.angle_min_deg,
-           .angle_max_deg = motor.shaping.angle_max_deg});
+           .angle_max_deg = motor.shaping.angle_max_deg,
+           .current_period = currentPeriodOf(motor.settings, traits),
+           .unreported_current_remedy = traits.unreported_current_remedy,
+           .unreported_torque_remedy = traits.unreported_torque_remedy});
     }
   }
   return outline;

@@ -236,6 +236,8 @@ MotorTraits cubemarsTraits(const CubemarsSettings& own) {
   traits.frozen_a = mit || model.signed_current ? traits.effort_full_scale : 0.0F;
   traits.signed_a = traits.frozen_a;
   if (servo) traits.own_loops = kServoLoops;
+  if (!(traits.signed_a > 0.0F))
+    traits.unreported_current_remedy = traits.unreported_torque_remedy = "name another motor";
   if (servo) traits.unseen_limit_remedy = "set the drive to MIT and write protocol: mit (V3: mit_v3)";
   traits.feedback_hz = mit ? 1000 : 500;  // the upload rate is set in the vendor's program, 1 to 500 Hz
   traits.max_feedback_hz = mit ? 1000 : 500;

@@ -62,6 +62,7 @@ class LktechFamily final : public MotorFamily {
     traits.torque_nm_per_a = own_torque > 0.0
                                  ? static_cast<float>(own_torque)
                                  : model.rotor_torque_nm_per_a * static_cast<float>(model.gear_ratio);
+    if (!(traits.torque_nm_per_a > 0.0F)) traits.unreported_torque_remedy = "write torque_nm_per_a";
     traits.nominal_v = 24.0F;
     // 16 bits of degrees per second of the rotor.
     traits.reported_rpm = static_cast<float>(32767.0 / kDegPerSPerRpm / model.gear_ratio);

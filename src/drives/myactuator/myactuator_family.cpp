@@ -97,6 +97,7 @@ class MyactuatorFamily final : public MotorFamily {
       traits.modes = ModeSet{ControlMode::kCoast, ControlMode::kCurrent,    ControlMode::kVelocity,
                              ControlMode::kAngle, ControlMode::kTotalAngle, ControlMode::kBrake};
       traits.frames.damp = Provision::kUnsupported;
+      traits.unreported_torque_remedy = "write torque_nm_per_a";
     }
     traits.samples_every = std::max(own.integer("angle_divider"), 1);
     // It has one (0xB3), but setting it writes its ROM and nothing reads it back.

@@ -76,7 +76,10 @@ class OdriveFamily : public MotorFamily {
     // traits.frozen_a stays 0: the current comes too rarely to tell a frozen drive by it.
     if (telemetry) traits.signed_a = traits.effort_full_scale;
     traits.limit_by_report = telemetry;
-    if (!telemetry) traits.unseen_limit_remedy = "let it send its current and write telemetry_hz";
+    if (!telemetry) {
+      traits.unseen_limit_remedy = traits.unreported_current_remedy = traits.unreported_torque_remedy =
+          "let it send its current and write telemetry_hz";
+    }
     traits.signed_current_hz = own.integer("telemetry_hz");
     // encoder_rate_ms (0.5), encoder_msg_rate_ms (0.6): 10 ms as delivered, whole milliseconds.
     traits.feedback_hz = 100;

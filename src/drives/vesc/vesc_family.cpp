@@ -266,6 +266,8 @@ MotorTraits vescTraits(const VescSettings& own) {
   if (own.kv_rpm_per_v > 0.0) {
     traits.torque_nm_per_a = static_cast<float>(kTorqueTimesKv / own.kv_rpm_per_v);
     traits.no_load_rpm = static_cast<float>(own.kv_rpm_per_v * own.supply_v);
+  } else {
+    traits.unreported_torque_remedy = "write kv_rpm_per_v";
   }
   traits.nominal_v = static_cast<float>(own.supply_v);
   traits.absolute = own.angle == VescAngle::kEncoder && own.position_divider == 1.0;

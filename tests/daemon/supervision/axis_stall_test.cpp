@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/motor_families.hpp"
+#include "daemon/supervision/family_variants.hpp"
 #include "daemon/supervision/one_motor.hpp"
 
 namespace rc10::test::axis_stall_test {
@@ -21,13 +22,7 @@ using ::testing::AnyOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A motor, in each of the choices of one of its keys.
-struct Row {
-  const char* keys;
-  const char* varied;  ///< The key; empty: none.
-  double rpm = 60.0;
-  const char* bus = "";
-};
+using Row = FamilyRow;
 
 const Row kRows[] = {
     {"model: M3508, id: 1, current_limit_a: 5, zero: power_on", ""},
@@ -65,29 +60,6 @@ struct Subject {
 
 void PrintTo(const Subject& subject, std::ostream* out) { *out << subject.keys; }
 
-const MotorFamily& familyOf(const std::string& keys) {
-  const auto begin = keys.find("model: ") + 7;
-  const auto model = keys.substr(begin, keys.find(',') - begin);
-  for (const auto& entry : motorFamilies()) {
-    const auto models = entry.family->models();
-    if (std::find(models.begin(), models.end(), model) != models.end()) return *entry.family;
-  }
-  ADD_FAILURE() << "no family has the model " << model;
-  return *motorFamilies().front().family;
-}
-
-std::vector<std::string> variantsOf(const Row& row) {
-  const std::string_view varied = row.varied;
-  std::vector<std::string> variants;
-  for (const OwnKey& key : familyOf(row.keys).keys()) {
-    if (key.name != varied) continue;
-    for (const auto choice : key.choices)
-      variants.push_back(std::string{row.keys} + ", " + std::string{varied} + ": " + std::string{choice});
-  }
-  if (variants.empty()) variants.emplace_back(row.keys);
-  return variants;
-}
-
 const std::string kWatched = ", stall_ms: 300";
 
 /// Those whose configuration takes the keys.
@@ -105,7 +77,7 @@ TEST(StallOfAFamily, IsPromisedByEachButWhereTheDriveAloneKnowsItsLimit) {
   std::set<std::string_view> tried;
   std::vector<std::string> refused;
   for (const Row& row : kRows) {
-    tried.insert(familyOf(row.keys).name());
+    tried.insert(familyOfKeys(row.keys).name());
     for (const auto& keys : variantsOf(row)) {
       const auto outcome = OneMotor::parse(keys + kWatched, row.bus);
       if (outcome.config || !OneMotor::parse(keys, row.bus).config) continue;  // a protocol of other models
@@ -173,7 +145,7 @@ TEST(StallOfAFamily, AShaftThatALoadTurnsTooFastIsOverspeedWhereItsLimitIsNotSee
     SCOPED_TRACE(keys);
     OneMotor motor{keys};
     const auto fault = faultOfOverload(motor, 60.0);
-    if (familyOf(keys).name() == "Damiao") {  // whose position cannot be followed so fast
+    if (familyOfKeys(keys).name() == "Damiao") {  // whose position cannot be followed so fast
       EXPECT_THAT(fault, AnyOf(FaultCode::kOverspeed, FaultCode::kEncoderJump));
     } else {
       EXPECT_EQ(fault, FaultCode::kOverspeed);
@@ -190,7 +162,7 @@ class StallTest : public ::testing::TestWithParam<Subject> {
 
 // The limit of a loop of the drive acts in each turn of the motor, and between them.
 TEST_P(StallTest, IsSeenInEachModeWhateverTheRhythmOfItsCommands) {
-  const auto& family = familyOf(GetParam().keys);
+  const auto& family = familyOfKeys(GetParam().keys);
   for (const int divider : {1, 2, 5}) {
     if (family.name() == "DJI" && divider > 1) break;  // shares its frames
     for (const auto& [mode, value] :
