@@ -222,24 +222,6 @@ RobotConfig robotWithinHalfATurn(float approach_effort_per_rpm) {
   return config;
 }
 
-TEST_F(FaultTest, SoftLimitsHoldUnderEveryMode) {
-  auto config = robotWithinHalfATurn(0.2F);
-  config.buses[0].motors[kLeft].shaping.effort_per_nm = 1.0F / 0.3F;
-  for (const Target target :
-       {Target{.mode = ControlMode::kVelocity, .value = 480.0},
-        Target{.mode = ControlMode::kCurrent, .value = 5.0},
-        Target{.mode = ControlMode::kCurrent, .torque_ff_nm = 1.5F},
-        Target{.mode = ControlMode::kTotalAngle, .value = 3600.0},
-        Target{.mode = ControlMode::kTotalAngle, .value = 181.0, .velocity_ff_rpm = 200.0F}}) {
-    start(config);
-    robot->hold(kLeft, target, 3000);
-    EXPECT_NEAR(robot->motor(kLeft).feedback.total_angle_deg, 180.0, 5.0) << toString(target.mode);
-    EXPECT_NE(robot->motor(kLeft).limits & kLimitAngle, 0U);
-    robot->hold(kLeft, {.mode = ControlMode::kVelocity, .value = -60.0}, 500);
-    EXPECT_LT(robot->motor(kLeft).feedback.total_angle_deg, 100.0);
-  }
-}
-
 TEST_F(FaultTest, ASoftLimitHoldsACurrentWithGainsThatWereSetLive) {
   auto config = robotWithinHalfATurn(0.02F);
   config.buses[0].motors[kLeft].shaping.approach_effort_is_gain = true;
