@@ -71,6 +71,17 @@ RobotConfig heldInEstops(const Subject& subject) {
   return config;
 }
 
+// As an operator would: some drives refuse while they start.
+bool activate(VirtualRobot& robot) {
+  const auto is = [&robot](MotorStatus status) { return robot.motor(0).status == status; };
+  for (int i = 0; i < 4000 && !is(MotorStatus::kReady); ++i) robot.run(1);
+  for (int i = 0; i < 4 && !is(MotorStatus::kActive); ++i) {
+    robot.order(Operation::kEnable);
+    robot.run(1000);
+  }
+  return is(MotorStatus::kActive);
+}
+
 class Family : public ::testing::TestWithParam<Subject> {
  protected:
   static constexpr std::size_t kMotor = 0;
@@ -165,12 +176,7 @@ TEST_P(Family, AHoldAfterAPauseBeginsWhereTheShaftIs) {
   motor.fallback.on_timeout = holds ? FallbackAction::kHold : FallbackAction::kBrake;
   VirtualRobot paused{config};
   const auto angleDeg = [&] { return paused.simBus().drive(kMotor).physics().outputAngleDeg(); };
-  for (int i = 0; i < 4000 && paused.motor(kMotor).status != MotorStatus::kReady; ++i) paused.run(1);
-  for (int i = 0; i < 4 && paused.motor(kMotor).status != MotorStatus::kActive; ++i) {
-    paused.order(Operation::kEnable);
-    paused.run(1000);
-  }
-  ASSERT_EQ(paused.motor(kMotor).status, MotorStatus::kActive);
+  ASSERT_TRUE(activate(paused));
   paused.hold(kMotor, {.mode = ControlMode::kVelocity, .value = GetParam().rpm}, 2000);
   const double before_deg = angleDeg();
   paused.tick(60);
@@ -183,6 +189,36 @@ TEST_P(Family, AHoldAfterAPauseBeginsWhereTheShaftIs) {
     EXPECT_NEAR(held_deg, after_deg, 5.0 + 0.02 * GetParam().rpm) << "nothing pulls it back";
   }
   EXPECT_EQ(paused.motor(kMotor).acting, holds ? Acting::kHold : Acting::kBrake);
+}
+
+// Its last speed is of before the pause.
+TEST_P(Family, ARampAfterAPauseDoesNotDriveAShaftThatAnObstacleHasStopped) {
+  auto config = configOf(GetParam());
+  config.buses[0].motors[0].fallback.on_estop = FallbackAction::kRamp;
+  config.buses[0].motors[0].fallback.ramp = std::chrono::seconds{2};
+  VirtualRobot paused{config};
+  ASSERT_TRUE(activate(paused));
+  const Target turning{.mode = ControlMode::kVelocity, .value = GetParam().rpm};
+  paused.hold(kMotor, turning, 2000);
+  auto& shaft = paused.simBus().drive(kMotor).physics();
+  paused.simBus().stall(kMotor, true);
+  paused.exchange().estop.store(true);
+  paused.tick(60);
+  const double pushed_a = std::fabs(shaft.currentA());
+  paused.run(8);  // until its current has gone
+  double most_a = 0.0;
+  double most_rpm = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    paused.tick();
+    const auto& seen = paused.motor(kMotor);
+    // A loop of the drive keeps its integral, and is told a speed.
+    const bool speed = seen.command_unit == CommandUnit::kNative;
+    if (speed) most_rpm = std::max(most_rpm, std::fabs(static_cast<double>(seen.command_value)));
+    if (!speed) most_a = std::max(most_a, std::fabs(shaft.currentA()));
+  }
+  EXPECT_LT(most_a, std::max(0.2, 0.25 * pushed_a));
+  EXPECT_LT(most_rpm, 0.05 * GetParam().rpm);
+  EXPECT_EQ(paused.motor(kMotor).acting, Acting::kRamp);
 }
 
 class RestartedFamily : public Family {};
@@ -355,12 +391,7 @@ TEST_P(EndingFamily, IsEnabledInWhicheverTickItsFallbackEnds) {
   for (const int ticks : {396, 399, 400, 401, 404}) {
     SCOPED_TRACE(ticks);
     VirtualRobot robot{heldWithBoundOrRamp(subject, ramp, divider)};
-    for (int i = 0; i < 4000 && robot.motor(0).status != MotorStatus::kReady; ++i) robot.run(1);
-    for (int i = 0; i < 4 && robot.motor(0).status != MotorStatus::kActive; ++i) {
-      robot.order(Operation::kEnable);
-      robot.run(1000);
-    }
-    ASSERT_EQ(robot.motor(0).status, MotorStatus::kActive);
+    ASSERT_TRUE(activate(robot));
     robot.hold(0, {.mode = ControlMode::kVelocity, .value = 0.0}, 1000);  // a stop is cleared at rest
     robot.order(Operation::kEstop);
     robot.run(ticks - 2);

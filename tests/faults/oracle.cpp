@@ -298,6 +298,7 @@ void Oracle::setActions(Motor& motor, Actions actions) {
   motor.actions = actions;
   motor.acts_since = now_;
   motor.rpm_when_it_began = motor.wire->measured().velocity_rpm;
+  motor.began_unmeasured = !fresh(motor);
   motor.acts_since_tick = tick_;
   motor.unbraked_ticks = 0;
   motor.ends_at_standstill = false;

@@ -145,6 +145,8 @@ class Oracle {
     Actions actions{1};
     MonotonicTime acts_since{};
     double rpm_when_it_began = 0.0;
+    bool began_unmeasured =
+        false;  ///< Its feedback was not fresh then: the speed is that of the next sample.
     std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
     bool rests_with_group = false;  ///< Disabled since another member was.

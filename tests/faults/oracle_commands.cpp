@@ -344,6 +344,10 @@ void Oracle::judgeFallback(std::size_t index) {
   auto& motor = motors_[index];
   const auto& fallback = motor.config->fallback;
   auto actions = motor.actions;
+  if (motor.began_unmeasured && fresh(motor)) {
+    motor.rpm_when_it_began = motor.wire->measured().velocity_rpm;
+    motor.began_unmeasured = false;
+  }
   // A load that was held moves after that at the earliest.
   const bool holds = motor.actions == only(FallbackAction::kHold);
   if (motor.ends_at_standstill && (!holds || now_ - motor.acts_since >= fallback.hold_max + kSettled))

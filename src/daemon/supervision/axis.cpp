@@ -61,8 +61,11 @@ Acting Axis::acting() const noexcept {
     case FrameKind::kHold: return Acting::kHold;
     case FrameKind::kDamp: return Acting::kDamp;
     case FrameKind::kBrake: return Acting::kBrake;
-    // It waits for a place, and acts as far as others are concerned.
-    case FrameKind::kIdle: return fallback_.kind() == FrameKind::kHold ? Acting::kHold : Acting::kNothing;
+    // It waits for a place or a speed, and acts as far as others are concerned.
+    case FrameKind::kIdle:
+      return fallback_.kind() == FrameKind::kHold      ? Acting::kHold
+             : fallback_.kind() == FrameKind::kCommand ? Acting::kRamp
+                                                       : Acting::kNothing;
     case FrameKind::kCommand:
     case FrameKind::kRest:
     case FrameKind::kPoll:
@@ -269,8 +272,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
   auto kind = frameKind(robot);
-  if (kind == FrameKind::kHold && motor_.ordered() != FrameKind::kHold && !fresh(tick) && !stood())
-    kind = FrameKind::kIdle;
+  if (awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;
   if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
     shaper_.reset();
@@ -294,8 +296,18 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (stops || speeds_bounded_) boundSpeeds(stops, tick.now);
 }
 
-// A hold begins at a place that is measured after a pause, unless the shaft had no reason to leave the one of
-// before it: a load would sink meanwhile.
+// After a pause a hold begins at a place, and a ramp at a speed, that is measured then, unless the shaft had
+// no reason to leave the one of before it: a load would sink meanwhile.
+bool Axis::awaitsFeedback(FrameKind kind, const Tick& tick) noexcept {
+  if (kind == FrameKind::kHold) return motor_.ordered() != FrameKind::kHold && !fresh(tick) && !stood();
+  if (!ramp_unmeasured_ || kind != FrameKind::kCommand || !ramps()) return false;
+  const bool measured = fresh(tick);
+  if (!measured && !stood()) return true;
+  ramp_unmeasured_ = false;
+  fallback_.rampFrom(measured ? static_cast<double>(finiteOr0(motor_.feedback().velocity_rpm)) : 0.0);
+  return false;
+}
+
 bool Axis::stood() const noexcept {
   if (!standsStill()) return false;
   const auto ordered = motor_.ordered();
@@ -524,8 +536,8 @@ void Axis::beginTimeoutFallback(const Stop& why, const Tick& tick) noexcept {
 void Axis::beginFallback(FallbackAction action, Fallback::Until until, bool estop,
                          const Tick& tick) noexcept {
   const auto& config = entry_.fallback;
-  const auto measured_rpm = static_cast<double>(motor_.feedback().velocity_rpm);
-  const Fallback::Ramp ramp{std::isfinite(measured_rpm) ? measured_rpm : 0.0, config.ramp};
+  const Fallback::Ramp ramp{static_cast<double>(finiteOr0(motor_.feedback().velocity_rpm)), config.ramp};
+  ramp_unmeasured_ = action == FallbackAction::kRamp && !fresh(tick);
   fallback_.begin(action, until, boundOf(action, estop, config, motor_.driveFrames()), ramp, tick.now);
   shaper_.reset();
   stops_ = false;  // another stop, from now on

@@ -174,6 +174,8 @@ class Axis {
     return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
   }
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
+  /// A hold or a ramp begins, and what it begins from is not measured yet; else that becomes its own.
+  [[nodiscard]] bool awaitsFeedback(FrameKind kind, const Tick& tick) noexcept;
   /// In the last tick, where it was told to: the place that is known is where it is.
   [[nodiscard]] bool stood() const noexcept;
   [[nodiscard]] std::optional<SkipReason> whyNotNow(const Target& target) const noexcept;
@@ -197,6 +199,7 @@ class Axis {
   double hold_goal_deg_ =
       std::numeric_limits<double>::quiet_NaN();  ///< Place of the last hold under a ceiling.
   double stop_from_rpm_ = 0.0;                   ///< Speed at which the stop began.
+  bool ramp_unmeasured_ = false;                 ///< A ramp has begun without fresh feedback.
   bool stops_ = false;                           ///< Braked, or led to rest along a ramp, in the last tick.
   bool speeds_bounded_;                          ///< It stops, or limitsSpeed().
   MotorStatus status_ = MotorStatus::kOffline;

@@ -92,6 +92,8 @@ class Fallback {
     still_deg_ = std::numeric_limits<double>::quiet_NaN();
   }
   void end() noexcept { kind_ = FrameKind::kRest; }
+  /// The speed of a ramp that had no measured one when it began; its time runs on.
+  void rampFrom(double rpm) noexcept { ramp_.from_rpm = rpm; }
   /// This kind acts in its place from now on, and ends as it would have.
   void giveWay(FrameKind kind) noexcept { kind_ = then_ = kind; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
