@@ -25,6 +25,9 @@ class CommandPacker {
   /// Writes this tick's frames to `out` (room for kMaxFramesPerPacker) and returns how many.
   [[nodiscard]] virtual std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept = 0;
 
+  /// A frame of its was not sent: refused by the kernel, without room in the tick, or held back.
+  virtual void onUnsent() noexcept {}
+
   /// The frames that leave every drive behind this packer without torque, whatever the state.
   [[nodiscard]] virtual std::size_t packRest(std::span<CanFrame> out) const noexcept = 0;
 };

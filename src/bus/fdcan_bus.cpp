@@ -165,6 +165,7 @@ void fdCANbus::packAll(Pack pack) noexcept {
     if (count > batch_->room()) {  // half a sequence is worse than none
       counters_.tx_dropped += count;
       if (!first_crowded_out_) first_crowded_out_ = packer;
+      packers_[packer]->onUnsent();
       continue;
     }
     for (const CanFrame& frame : std::span(packed_).first(count)) append(frame, packer);
@@ -187,11 +188,16 @@ void fdCANbus::flush() noexcept {
 
 void fdCANbus::holdBack() noexcept {
   counters_.tx_held += batch_->entries().size();
+  for (const SendBatch::Entry& entry : batch_->entries()) tellUnsent(entry.packer);
   first_crowded_out_.reset();
   batch_->clear();
 }
 
 int fdCANbus::sendError() const noexcept { return batch_->error(); }
+
+void fdCANbus::tellUnsent(std::optional<std::size_t> packer) const noexcept {
+  if (packer) packers_[*packer]->onUnsent();
+}
 
 void fdCANbus::countSent() noexcept {
   for (const SendBatch::Entry& entry : batch_->entries()) {
@@ -200,6 +206,7 @@ void fdCANbus::countSent() noexcept {
       ++(entry.sent ? counters_.tx_watched : counters_.tx_watched_refused);
     if (!entry.sent) {
       ++counters_.tx_dropped;
+      tellUnsent(entry.packer);
       continue;
     }
     ++counters_.tx_frames;

@@ -106,7 +106,7 @@ class fdCANbus {
   /// Is this one of the packers' rest frames, whoever sent it?
   [[nodiscard]] bool isRest(const CanFrame& frame) const noexcept;
   /// Hands everything collected to the kernel in one sendmmsg(MSG_DONTWAIT). Refused frames are
-  /// dropped and counted; the next tick starts packing there.
+  /// dropped and counted, and their packers told; the next tick starts packing there.
   void flush() noexcept;
   /// Throws everything collected away and counts it as held back.
   void holdBack() noexcept;
@@ -133,6 +133,7 @@ class fdCANbus {
   template <typename Pack>
   void packAll(Pack pack) noexcept;
   void countSent() noexcept;
+  void tellUnsent(std::optional<std::size_t> packer) const noexcept;
 
   std::string name_;
   CanSocket socket_;

@@ -135,7 +135,8 @@ Target SoloMotor::resolved() noexcept {
   const FrameKind kind = ordered();
   begins_ = std::exchange(told_, kind) != kind;
   const bool led = kind == FrameKind::kCommand && this->target().mode == ControlMode::kCoast;
-  order_is_new_ = std::exchange(led_, led) != led || begins_;
+  const bool other = std::exchange(led_, led) != led || begins_;
+  out_of_turn_ = std::exchange(unsent_, false) || other;
   if (!obeying()) speed_scale_.reset();
   if (kind != FrameKind::kHold) holding_ = false;
   if (kind == FrameKind::kBrake) return Target{.mode = ControlMode::kBrake};
@@ -203,9 +204,9 @@ double SoloMotor::rpmWithinLimit(double output_rpm, double drive_limit_rpm) noex
 }
 
 // The first frame of another order does not wait for its turn: an e-stop, the end of a target, also in a
-// ramp.
+// ramp. Nor does what stands for a frame that was not sent.
 bool SoloMotor::due(const Tick& tick) const noexcept {
-  return order_is_new_ || tick.index % divider_ == phase_ % divider_;
+  return out_of_turn_ || tick.index % divider_ == phase_ % divider_;
 }
 
 }  // namespace rc10

@@ -38,6 +38,7 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   }
   void forgetReference() noexcept override;
   [[nodiscard]] bool due(const Tick& tick) const noexcept final;
+  void onUnsent() noexcept final { unsent_ = true; }
 
  protected:
   /// `drive_turns`: turns of what the drive reports per turn of the output shaft. get_GearRatio() where it
@@ -167,8 +168,9 @@ class SoloMotor : public Motor_Base, public CommandPacker {
   double speed_field_end_rpm_ = std::numeric_limits<double>::max();
   FrameKind told_ = FrameKind::kRest;  ///< The order of the last tick.
   bool begins_ = false;
-  bool led_ = false;           ///< By a fallback, in the last tick.
-  bool order_is_new_ = false;  ///< begins(), or led otherwise than in the last tick.
+  bool led_ = false;          ///< By a fallback, in the last tick.
+  bool unsent_ = false;       ///< A frame since the last update() was not sent.
+  bool out_of_turn_ = false;  ///< begins(), led otherwise than in the last tick, or unsent_ then.
   bool holding_ = false;
   bool follows_angle_ = false;  ///< By the target of the last tick.
   double hold_deg_ = 0.0;

@@ -75,7 +75,10 @@ class FakePacker : public CommandPacker {
     return 1;
   }
 
+  void onUnsent() noexcept override { ++unsent; }
+
   bool fd = false;
+  int unsent = 0;  ///< Calls of onUnsent().
 
  private:
   std::string name_;

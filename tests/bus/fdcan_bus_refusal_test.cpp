@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "bus/fdcan_bus_fixture.hpp"
 
@@ -124,6 +126,27 @@ TEST_F(FdCanBusTest, APackerThatFindsNoRoomSendsNoneOfItsFramesAndComesFirstNext
   // 4 + 1 + 19 * 3 frames leave no room for the three of 20 and 21.
   EXPECT_EQ(counters().tx_dropped, 4U + 6U);
   EXPECT_EQ(sendTick().front(), 20U);
+}
+
+TEST_F(FdCanBusTest, APackerIsToldThatAFrameOfItsWasNotSent) {
+  const auto told = [this] {
+    std::vector<int> unsent;
+    for (auto& packer : packers_) unsent.push_back(std::exchange(packer.unsent, 0));
+    return unsent;
+  };
+  addPackers(3);
+  sendTick();
+  EXPECT_THAT(told(), ElementsAre(0, 0, 0));
+  frameCalls().refuse = [](const msghdr& message) { return idOf(message) == 2 ? ENOBUFS : 0; };
+  sendTick();
+  EXPECT_THAT(told(), ElementsAre(0, 1, 1)) << "refused by the kernel, or behind that one";
+  frameCalls().refuse = nullptr;
+  bus_->packCommands(tick_);
+  bus_->holdBack();
+  EXPECT_THAT(told(), ElementsAre(1, 1, 1)) << "held back";
+  for (int i = 0; i < 62; ++i) EXPECT_TRUE(bus_->sendFrame(classic({0x100, false})));
+  sendTick();
+  EXPECT_THAT(told(), ElementsAre(1, 0, 0)) << "without room";
 }
 
 // ---- system calls, and errors that a socketpair does not have ----

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -12,6 +13,7 @@
 #include "config/load_config.hpp"
 #include "config/motor_families.hpp"
 #include "daemon/virtual_robot.hpp"
+#include "support/frame_calls.hpp"
 
 namespace rc10::test::family_test {
 namespace {
@@ -254,6 +256,26 @@ TEST_P(Family, AFaultOfTheDriveIsTheMotorsUntilItIsCleared) {
   EXPECT_EQ(status(), MotorStatus::kReady);
   EXPECT_EQ(robot.motor(kMotor).fault, FaultCode::kNone);
   EXPECT_TRUE(enable());
+}
+
+TEST_P(Family, AnEstopWhoseFirstFrameTheKernelRefusesIsToldInTheNextTick) {
+  auto config = configOf(GetParam());
+  config.buses[0].motors[0].settings.command_divider = 10;
+  VirtualRobot seldom{config};
+  ASSERT_TRUE(activate(seldom));
+  const Target turning{.mode = ControlMode::kVelocity, .value = GetParam().rpm};
+  seldom.hold(kMotor, turning, 500);
+  const auto sent = [&] { return seldom.snapshot().buses[0].counters.tx_frames; };
+  // Its next turn is nine ticks later.
+  for (auto before = sent(); sent() == before;) seldom.hold(kMotor, turning, 1);
+  const auto before = sent();
+  seldom.exchange().estop.store(true);
+  frameCalls() = {.refuse = [](const msghdr&) { return ENOBUFS; }};
+  seldom.tick();
+  frameCalls() = {};
+  ASSERT_EQ(sent(), before);
+  seldom.tick();
+  EXPECT_GT(sent(), before);
 }
 
 TEST_P(Family, ADriveWithAnotherIdIsNotThere) {

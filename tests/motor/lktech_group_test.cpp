@@ -83,6 +83,12 @@ TEST_F(LKTechGroup, NothingIsSentWhenNoMembersTurnHasCome) {
   EXPECT_EQ(packed(group), "280#7C00000000000000");
   tell(*one, 1.0, 3);
   EXPECT_EQ(packed(group), "");
+  tell(*one, 1.0, 4);
+  group.onUnsent();
+  tell(*one, 1.0, 5);
+  EXPECT_EQ(packed(group), "280#7C00000000000000") << "the last one was not sent";
+  tell(*one, 1.0, 7);
+  EXPECT_EQ(packed(group), "");
 }
 
 TEST_F(LKTechGroup, RefusesTakenSlotsAndMotorsWithoutOneNamingThem) {

@@ -28,6 +28,11 @@ std::size_t LKTech_Group::packCommand(const Tick& /*tick*/, std::span<CanFrame> 
   return 1;
 }
 
+void LKTech_Group::onUnsent() noexcept {
+  for (auto* motor : slots_)
+    if (motor != nullptr) motor->onUnsent();
+}
+
 std::size_t LKTech_Group::packRest(std::span<CanFrame> out) const noexcept {
   const bool any =
       std::any_of(slots_.begin(), slots_.end(), [](const auto* motor) { return motor != nullptr; });

@@ -24,6 +24,7 @@ class LKTech_Group final : public CommandPacker {
   /// Nothing in a tick in which no member is to be told anything.
   [[nodiscard]] std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept override;
   [[nodiscard]] std::size_t packRest(std::span<CanFrame> out) const noexcept override;
+  void onUnsent() noexcept override;
 
  private:
   std::array<CanId, 1> ids_{CanId{lktech::kGroupId, false}};
