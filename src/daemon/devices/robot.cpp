@@ -120,6 +120,9 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   if (!motor) return tl::unexpected(motor.error());
   entry.feedback_expected |= (*motor)->speaksUnasked();
   auto use = config.family->busUse(config.settings);
+  auto shaping = config.shaping;
+  shaping.feedback_period_s = seconds((*motor)->feedbackPeriod());
+  shaping.command_period_s = seconds(std::max(config.settings.command_divider, 1) * period_);
   // The age may be half of the timeout, which spans two periods of the feedback at least; two periods of the
   // ticks are for their jitter, so that without a pause the clock decides.
   motors_.push_back(
@@ -130,7 +133,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
        .most_unheard = std::max(config.feedback_timeout / 2, config.feedback_timeout - 2 * period_),
        .guard = config.guard,
        .rest = config.rest,
-       .shaping = config.shaping,
+       .shaping = shaping,
        .reduced = config.reduced,
        .fallback = config.fallback,
        .standstill_rpm = config.standstill_rpm,

@@ -270,6 +270,7 @@ bool Axis::lapses(const Tick& tick) noexcept {
 }
 
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
+  if (shaper_.hasSoftLimits()) shaper_.reckon(motor_.feedback(), tick.now);
   if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
   auto kind = frameKind(robot);
   if (awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;

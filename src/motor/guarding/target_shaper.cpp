@@ -19,6 +19,8 @@ constexpr double kFirstLeadShare = 0.1;
 constexpr double kFeedForwardBackSeconds = 0.5;
 // Effort outwards fades over this speed, where the effort that keeps a lower one is not known.
 constexpr double kEffortFadesRpm = 20.0;
+// Share of the way to a soft limit that goes by before a sample counts as late: frames are not on time.
+constexpr double kLateShare = 0.75;
 // Share of the allowed speed below which an effort acts again, after the speed was bounded.
 constexpr double kEffortAgainShare = 0.8;
 
@@ -209,9 +211,30 @@ void TargetShaper::takeOver(const Target& target, const MotorFeedback& feedback,
 }
 
 TargetShaper::Envelope TargetShaper::envelope(double total_angle_deg) const noexcept {
-  const auto slope = static_cast<double>(config_.approach_rpm_per_deg);
-  return {std::min(0.0, (config_.angle_min_deg - total_angle_deg) * slope),
-          std::max(0.0, (config_.angle_max_deg - total_angle_deg) * slope)};
+  const double slope = approach_rpm_per_deg_;
+  return {std::min(0.0, (config_.angle_min_deg - total_angle_deg + unseen_deg_) * slope),
+          std::max(0.0, (config_.angle_max_deg - total_angle_deg - unseen_deg_) * slope)};
+}
+
+// A speed is told by a sample that may be a period old, and kept until the next command.
+void TargetShaper::boundApproach() noexcept {
+  const double spacing_s =
+      static_cast<double>(config_.feedback_period_s) + static_cast<double>(config_.command_period_s);
+  approach_rpm_per_deg_ = static_cast<double>(config_.approach_rpm_per_deg);
+  if (spacing_s > 0.0)
+    approach_rpm_per_deg_ = std::min(approach_rpm_per_deg_,
+                                     static_cast<double>(kApproachOfSpacing) / (kDegPerSPerRpm * spacing_s));
+  late_s_ =
+      kLateShare / (kDegPerSPerRpm * approach_rpm_per_deg_) - static_cast<double>(config_.command_period_s);
+}
+
+// The command of before the sample may still act.
+void TargetShaper::reckon(const MotorFeedback& feedback, MonotonicTime now) noexcept {
+  const bool came = std::exchange(samples_, feedback.samples) != feedback.samples;
+  if (came) fastest_rpm_ = std::fabs(static_cast<double>(finiteOr0(feedback.velocity_rpm)));
+  if (mode_ == ControlMode::kVelocity) fastest_rpm_ = std::max(fastest_rpm_, std::fabs(value_));
+  const auto age_s = static_cast<double>(seconds(now - feedback.received));
+  unseen_deg_ = age_s > late_s_ ? fastest_rpm_ * kDegPerSPerRpm * age_s : 0.0;
 }
 
 TargetShaper::Envelope TargetShaper::softEnvelope(const MotorFeedback& feedback) const noexcept {

@@ -15,6 +15,10 @@ namespace rc10 {
 /// inertia it was tuned for still stops before the limit.
 inline constexpr float kApproachOfAngleGain = 0.5F;
 
+/// The same of the spacing of samples and commands: share of the distance that the shaft goes before the next
+/// command that knows of it.
+inline constexpr float kApproachOfSpacing = 0.5F;
+
 /// Slew limit and range of a target. At the output shaft; 0: no slew limit.
 struct ShapingConfig {
   float effort_slew_per_s = 0.0F;  ///< A/s or V/s, as the drive is commanded.
@@ -22,7 +26,9 @@ struct ShapingConfig {
   float angle_slew_deg_per_s = 0.0F;
   double angle_min_deg = -std::numeric_limits<double>::infinity();  ///< Soft limits of the total angle.
   double angle_max_deg = std::numeric_limits<double>::infinity();
-  float approach_rpm_per_deg = 0.0F;     ///< Speed allowed towards a soft limit, per degree before it.
+  float approach_rpm_per_deg = 0.0F;  ///< Speed allowed towards a soft limit, per degree before it.
+  float feedback_period_s = 0.0F;     ///< Bounds that approach, with the next one; 0: no bound.
+  float command_period_s = 0.0F;
   float approach_effort_per_rpm = 0.0F;  ///< Effort allowed towards it, per rpm below the allowed speed.
   bool approach_effort_is_gain = false;  ///< It is the proportional gain of the velocity loop on the host.
   float effort_per_rpm = 0.0F;           ///< Effort that only keeps up a speed: 0 for A, back-EMF for V.
@@ -55,7 +61,9 @@ class TargetShaper {
  public:
   explicit TargetShaper(const ShapingConfig& config) noexcept
       : config_(config),
-        soft_limits_(std::isfinite(config.angle_min_deg) || std::isfinite(config.angle_max_deg)) {}
+        soft_limits_(std::isfinite(config.angle_min_deg) || std::isfinite(config.angle_max_deg)) {
+    boundApproach();
+  }
 
   /// Last command to the drive.
   struct InForce {
@@ -76,6 +84,8 @@ class TargetShaper {
   [[nodiscard]] std::uint32_t slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
                                        float dt_s) noexcept;
   [[nodiscard]] bool hasSoftLimits() const noexcept { return soft_limits_; }
+  /// In each tick, before a step, where hasSoftLimits(): beyond a late sample the shaft has gone on.
+  void reckon(const MotorFeedback& feedback, MonotonicTime now) noexcept;
   /// Speeds beyond which no loop is to push the shaft on: those of the soft limits and of the ceiling, and in
   /// a stop from `from_rpm` those between it and standstill; each with a tolerance for what a loop overshoots
   /// by. Infinite: no bound.
@@ -84,6 +94,7 @@ class TargetShaper {
   /// After a change of the loops' gains: see kApproachOfAngleGain.
   void setGains(float angle_kp, float velocity_kp) noexcept {
     config_.approach_rpm_per_deg = kApproachOfAngleGain * angle_kp;
+    boundApproach();
     if (config_.approach_effort_is_gain) config_.approach_effort_per_rpm = velocity_kp;
   }
   /// Speed that no target of any mode leads beyond; infinite: none. A shaft that is faster is braked by
@@ -122,6 +133,7 @@ class TargetShaper {
     return soft_limits_ && (feedback.zeroed || feedback.bounds_only);
   }
   [[nodiscard]] Envelope envelope(double total_angle_deg) const noexcept;
+  void boundApproach() noexcept;
   [[nodiscard]] bool reduced() const noexcept { return std::isfinite(ceiling_rpm_); }
   [[nodiscard]] Envelope softEnvelope(const MotorFeedback& feedback) const noexcept;
   /// Bounds of the soft limits, where there are any, and of the ceiling.
@@ -171,7 +183,12 @@ class TargetShaper {
                                                         float dt_s) noexcept;
 
   ShapingConfig config_;
-  bool soft_limits_;                        ///< On one side at least.
+  bool soft_limits_;                   ///< On one side at least.
+  double approach_rpm_per_deg_ = 0.0;  ///< ShapingConfig's, within what the spacing allows.
+  double late_s_ = 0.0;                ///< Age of a sample from which it is late.
+  std::uint64_t samples_ = 0;
+  double fastest_rpm_ = 0.0;  ///< Measured by the last sample, or told since.
+  double unseen_deg_ = 0.0;   ///< Most that the shaft has gone since a late sample; 0: it is not late.
   ControlMode mode_ = ControlMode::kCoast;  ///< Mode of the last step.
   double value_ = 0.0;                      ///< The slewed target of that mode.
   Travel travel_;
