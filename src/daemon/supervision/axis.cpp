@@ -478,8 +478,7 @@ std::optional<SkipReason> Axis::whyNotNow(const Target& target) const noexcept {
   if (needsReference(target.mode)) {
     if (!(std::fabs(target.value) <= kFarthestAngleDeg)) return SkipReason::kTooFar;
     if (!motor_.feedback().zeroed) return SkipReason::kNoReference;
-    const bool first = !actsByPlace(motor_.target());
-    if (first && !shaper_.firstStepAllowed(target, motor_.feedback())) return SkipReason::kFirstStep;
+    if (!shaper_.firstStepAllowed(target, motor_.target(), motor_.feedback())) return SkipReason::kFirstStep;
   }
   return std::nullopt;
 }

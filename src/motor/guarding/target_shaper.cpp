@@ -59,6 +59,14 @@ constexpr double kEffortAgainShare = 0.8;
   return effort < 0.0 ? std::clamp(told, -most, 0.0) : std::clamp(told, 0.0, most);
 }
 
+// Part of what `asked` does by its place that `before` did already.
+[[nodiscard]] double shareInForce(const Target& asked, const Target& before) noexcept {
+  if (!actsByPlace(before)) return 0.0;
+  const bool springs = asked.mode == ControlMode::kImpedance && before.mode == ControlMode::kImpedance;
+  if (!springs || !(asked.stiffness_nm_per_rad > before.stiffness_nm_per_rad)) return 1.0;
+  return static_cast<double>(before.stiffness_nm_per_rad) / static_cast<double>(asked.stiffness_nm_per_rad);
+}
+
 [[nodiscard]] bool isUnitOf(CommandUnit unit, ControlMode mode) noexcept {
   return (mode == ControlMode::kCurrent && unit == CommandUnit::kAmpere) ||
          (mode == ControlMode::kVoltage && unit == CommandUnit::kVolt);
@@ -66,10 +74,12 @@ constexpr double kEffortAgainShare = 0.8;
 
 }  // namespace
 
-bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept {
-  if (!actsByPlace(asked)) return true;
+bool TargetShaper::firstStepAllowed(const Target& asked, const Target& before,
+                                    const MotorFeedback& feedback) const noexcept {
+  const double share = 1.0 - shareInForce(asked, before);
+  if (!actsByPlace(asked) || !(share > 0.0)) return true;
   const double asked_deg = distanceDeg(asked, feedback);
-  if (std::fabs(asked_deg) > config_.max_first_step_deg) return false;
+  if (share * std::fabs(asked_deg) > config_.max_first_step_deg) return false;
   if (asked.mode != ControlMode::kAngle || !bounded(feedback)) return true;
   // Beyond a soft limit the shortest way may be closed, and the other one the way.
   const double here_deg = feedback.total_angle_deg;
@@ -80,11 +90,7 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const MotorFeedback& fe
 std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
                                  float dt_s) noexcept {
   if (!follows(target.mode)) begin(target, feedback, in_force);
-  // Without stiffness it is at no place: with one it begins where the shaft is then.
-  if (mode_ == ControlMode::kImpedance && !actsByPlace(target)) {
-    value_ = soft_ = feedback.total_angle_deg;
-    openTravel(value_);
-  }
+  if (mode_ == ControlMode::kImpedance) stiffen(target, feedback);
   if (!(share_ < 1.0)) return shape(target, feedback, in_force, dt_s);
   soften(target, feedback, dt_s);
   return shape(target, feedback, in_force, dt_s) | kLimitSlew;
@@ -97,6 +103,20 @@ std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedba
   const auto limits = shape(target, feedback, in_force, dt_s);
   soft_ = value_;
   return limits;
+}
+
+// A spring that becomes stiffer pulls no harder for that: where something leads its place, that goes on from
+// the place which gives the torque of before. Without stiffness it is at no place, and begins at the shaft.
+void TargetShaper::stiffen(const Target& asked, const MotorFeedback& feedback) noexcept {
+  const bool led = config_.angle_slew_deg_per_s > 0.0F || reduced() || share_ < 1.0;
+  const double before = std::exchange(stiffness_nm_per_rad_, static_cast<double>(asked.stiffness_nm_per_rad));
+  const bool stiff = actsByPlace(asked);
+  if (stiff && !(led && stiffness_nm_per_rad_ > before)) return;
+  const double share = stiff ? std::max(before, 0.0) / stiffness_nm_per_rad_ : 0.0;
+  const double here_deg = feedback.total_angle_deg;
+  value_ = here_deg + share * (value_ - here_deg);
+  soft_ = here_deg + share * (soft_ - here_deg);
+  openTravel(value_);
 }
 
 // Share of the target by the time since the motor was enabled, from where it is on its way: a target that
@@ -160,6 +180,7 @@ void TargetShaper::begin(const Target& target, const MotorFeedback& feedback, In
   speed_bounds_effort_ = false;
   value_ = velocity_ff_rpm_ = torque_ff_nm_ = 0.0;
   feeds_forward_ = false;
+  stiffness_nm_per_rad_ = static_cast<double>(target.stiffness_nm_per_rad);
   if (mode == ControlMode::kCurrent) {
     const bool told = in_force.unit == CommandUnit::kAmpere;
     value_ = static_cast<double>(told ? in_force.value : feedback.current_a);

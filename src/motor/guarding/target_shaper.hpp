@@ -115,8 +115,10 @@ class TargetShaper {
   }
 
   /// Whether an angle target that follows none is close enough to the measured angle, by the way that its
-  /// soft limits leave.
-  [[nodiscard]] bool firstStepAllowed(const Target& asked, const MotorFeedback& feedback) const noexcept;
+  /// soft limits leave; of a spring that follows a softer one, by the share that is new. `before`: the last
+  /// target.
+  [[nodiscard]] bool firstStepAllowed(const Target& asked, const Target& before,
+                                      const MotorFeedback& feedback) const noexcept;
 
  private:
   /// Speeds that still stop before the soft limits: low_rpm <= 0 <= high_rpm.
@@ -155,6 +157,7 @@ class TargetShaper {
   void begin(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
   void takeOver(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
   void soften(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
+  [[gnu::noinline]] void stiffen(const Target& asked, const MotorFeedback& feedback) noexcept;
   void boundAsked(Target& asked) const noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.
@@ -194,7 +197,8 @@ class TargetShaper {
   Travel travel_;
   double velocity_ff_rpm_ = 0.0;  ///< Slewed, too.
   double torque_ff_nm_ = 0.0;
-  bool feeds_forward_ = false;  ///< One of them is not 0.
+  double stiffness_nm_per_rad_ = 0.0;  ///< Stiffness of the last step.
+  bool feeds_forward_ = false;         ///< One of them is not 0.
   double ceiling_rpm_ = std::numeric_limits<double>::infinity();
   double ceiling_nm_ = 0.0;           ///< Torque feed-forward that the ceiling leaves.
   bool speed_bounds_effort_ = false;  ///< In place of an effort a speed is told.

@@ -410,7 +410,7 @@ TEST_F(TargetShaperTest, AFirstStepIsAsFarAsTheWayThatALimitLeaves) {
   const auto allowed = [&](double from_deg, double to_deg) {
     at(from_deg);
     feedback.angle_deg = static_cast<float>(wrapDegrees(from_deg));
-    return shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = to_deg}, feedback);
+    return shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = to_deg}, {}, feedback);
   };
   EXPECT_TRUE(allowed(100.0, 115.0));
   EXPECT_TRUE(allowed(130.0, 115.0));

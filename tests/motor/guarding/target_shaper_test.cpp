@@ -377,10 +377,10 @@ TEST_F(TargetShaperTest, SoftLimitsWaitForAReference) {
 TEST_F(TargetShaperTest, AFirstStepIsAllowedUpToItsLimit) {
   configure({.max_first_step_deg = 10.0});
   at(350.0);
-  EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = 0.0}, feedback));
-  EXPECT_FALSE(shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = 1.0}, feedback));
-  EXPECT_FALSE(shaper.firstStepAllowed({.mode = ControlMode::kTotalAngle, .value = 0.0}, feedback));
-  EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kVelocity, .value = 500.0}, feedback));
+  EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = 0.0}, {}, feedback));
+  EXPECT_FALSE(shaper.firstStepAllowed({.mode = ControlMode::kAngle, .value = 1.0}, {}, feedback));
+  EXPECT_FALSE(shaper.firstStepAllowed({.mode = ControlMode::kTotalAngle, .value = 0.0}, {}, feedback));
+  EXPECT_TRUE(shaper.firstStepAllowed({.mode = ControlMode::kVelocity, .value = 500.0}, {}, feedback));
 }
 
 // ---- Soft start
@@ -481,30 +481,6 @@ TEST_F(TargetShaperTest, ABrakeDoesNotStartSoftly) {
   shaper.restart();
   const auto first = step(ControlMode::kBrake, 0.0);
   EXPECT_EQ(first.target.mode, ControlMode::kBrake);
-}
-
-TEST_F(TargetShaperTest, AnImpedanceWithoutStiffnessIsAtNoPlace) {
-  configure({.angle_slew_deg_per_s = 100.0F, .max_first_step_deg = 30.0});
-  Target target{.mode = ControlMode::kImpedance, .value = 300.0};
-  EXPECT_TRUE(shaper.firstStepAllowed(target, feedback));
-  for (int i = 0; i < 5000; ++i) (void)step(target);
-  target.stiffness_nm_per_rad = 100.0F;
-  EXPECT_FALSE(shaper.firstStepAllowed(target, feedback));
-  EXPECT_NEAR(step(target).target.value, 0.2, 1e-6) << "from where the shaft is";
-}
-
-// It has sagged beyond the soft limit meanwhile.
-TEST_F(TargetShaperTest, AStiffnessThatComesBeyondASoftLimitBeginsThere) {
-  ShapingConfig config = soft;
-  config.angle_slew_deg_per_s = 100.0F;
-  configure(config);
-  Target target{.mode = ControlMode::kImpedance};
-  (void)step(target);
-  at(-110.0);
-  (void)step(target);
-  target.stiffness_nm_per_rad = 100.0F;
-  EXPECT_NEAR(step(target).target.value, -109.8, 1e-6);
-  EXPECT_NEAR(step(target).target.value, -109.7, 1e-6);
 }
 
 /// Speeds that a shaft may be pushed to, with tolerance.
