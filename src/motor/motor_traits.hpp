@@ -39,7 +39,10 @@ struct MotorTraits {
   /// An asked drive that is silent for longer may have restarted or turned too far to be followed; 0: not
   /// checked against command_divider.
   Duration restart_silence{};
-  /// Key, also set on the drive, that lengthens it; empty: none.
+  /// Shortest start of a drive that does not tell that it was restarted: so long a silence ends ACTIVE,
+  /// however long feedback_timeout_ms is. 0: it tells.
+  Duration unseen_start{};
+  /// Key, also set on the drive, that lengthens restart_silence; empty: none.
   std::string_view silence_key{};
   int samples_every = 1;     ///< Turns of an asked drive for each sample of its angle.
   bool fd = false;           ///< Speaks CAN FD.

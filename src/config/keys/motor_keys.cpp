@@ -358,8 +358,9 @@ constexpr std::array kMotorKeys{
         .unit = "ms",
         .range = {.min = 2, .max = 1000},
         .about =
-            "Without feedback for this long the motor is offline and gets no torque. Default: 20, but at "
-            "least four periods of its feedback."},
+            "Without feedback for this long the motor is offline and gets no torque. A DJI, LK-Tech or VESC "
+            "drive that is heard again after 300 ms or more may have been restarted: its motor is ACTIVE no "
+            "more, whatever is written. Default: 20, but at least four periods of its feedback."},
     Key{.name = "optional",
         .kind = kBoolean,
         .default_text = "false",

@@ -102,6 +102,12 @@ Result<void> Robot::addSimulated(const BusConfig& config) {
   return {};
 }
 
+// One lost frame of a drive that speaks seldom is no restart.
+Duration Robot::restartUnheard(const MotorConfig& config, const Motor_Base& motor) {
+  const Duration start = config.traits().unseen_start;
+  return start > Duration::zero() ? std::max(start, 5 * motor.feedbackPeriod() / 2) : Duration::max();
+}
+
 Result<void> Robot::addMotors(const BusConfig& config) {
   for (const auto& motor : config.motors) {
     if (auto added = addMotor(motor, buses_.size() - 1); !added) return added;
@@ -118,6 +124,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
   if (!entry.parts) entry.parts = std::make_unique<BusParts>(*entry.bus);
   auto motor = config.family->build(config.settings, *entry.parts);
   if (!motor) return tl::unexpected(motor.error());
+  const Duration restart_unheard = restartUnheard(config, **motor);
   entry.feedback_expected |= (*motor)->speaksUnasked();
   auto use = config.family->busUse(config.settings);
   auto shaping = config.shaping;
@@ -131,6 +138,7 @@ Result<void> Robot::addMotor(const MotorConfig& config, std::size_t bus_index) {
        .feedback_timeout = config.feedback_timeout,
        .oldest_heard = config.feedback_timeout / 2,
        .most_unheard = std::max(config.feedback_timeout / 2, config.feedback_timeout - 2 * period_),
+       .restart_unheard = restart_unheard,
        .guard = config.guard,
        .rest = config.rest,
        .shaping = shaping,

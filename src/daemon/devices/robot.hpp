@@ -36,6 +36,9 @@ class Robot {
     /// It is lost when feedback_timeout is over and it was unheard for more than this, in which a pause of
     /// rc10d counts as two periods.
     Duration most_unheard{};
+    /// Unheard for so long by the same count, it may have been restarted: it is lost, though it is heard
+    /// again.
+    Duration restart_unheard = Duration::max();
     GuardConfig guard{};
     RestConfig rest{};
     ShapingConfig shaping{};
@@ -116,6 +119,7 @@ class Robot {
   /// To the bus that was added last.
   [[nodiscard]] Result<void> addMotors(const BusConfig& config);
   [[nodiscard]] Result<void> addMotor(const MotorConfig& config, std::size_t bus_index);
+  [[nodiscard]] static Duration restartUnheard(const MotorConfig& config, const Motor_Base& motor);
   [[nodiscard]] Result<void> addModules(const RobotConfig& config);
   [[nodiscard]] Result<void> addSerialPorts();
   void addSpiDevices();

@@ -84,6 +84,7 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const Duration age = tick.now - feedback.received;
   // Samples that are old when they come are not heard: they could be old for ever.
   const bool heard = came && age <= entry_.oldest_heard;
+  restarted_ = heard && unheard_ >= entry_.restart_unheard && isOn(status_);
   if (!heard) {
     goUnheard(came, since);
     return fresh(tick);
@@ -91,7 +92,7 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   unheard_ = age;
   pause_forgiven_ = false;
   on_when_heard_ = isOn(status_) || fallback_.acts();
-  return !bus_.held;
+  return !bus_.held && !restarted_;
 }
 
 // Only at rest: nothing is written to a drive that is on.
@@ -120,6 +121,7 @@ bool Axis::fresh(const Tick& tick) const noexcept {
 // After a pause of the process, or of the computer, what came meanwhile may be unread, and drives that answer
 // were not asked. By the clock alone each such pause would be a fault of every motor.
 bool Axis::lost(const Tick& tick) const noexcept {
+  if (restarted_) return true;
   if (fresh(tick)) return false;
   return bus_.held || motor_.feedback().samples == 0 || unheard_ > entry_.most_unheard;
 }

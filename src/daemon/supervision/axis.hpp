@@ -49,7 +49,7 @@ class Axis {
   /// Once a tick, first: whether its feedback is fresh().
   bool listen(const Tick& tick, const Since& since) noexcept;
   [[nodiscard]] bool fresh(const Tick& tick) const noexcept;
-  /// Not fresh, and not only because this thread did not run.
+  /// Not fresh, and not only because this thread did not run; or fresh again after a restart, perhaps.
   [[nodiscard]] bool lost(const Tick& tick) const noexcept;
   /// Once, some time after the first tick: its drive has not been heard yet.
   [[nodiscard]] bool missesDrive(const Tick& tick) noexcept;
@@ -213,6 +213,7 @@ class Axis {
   Duration unheard_{};           ///< Time since it was heard, less what is excused; a pause of this thread is
                                  ///< two periods of it.
   bool pause_forgiven_ = false;  ///< Since it was heard.
+  bool restarted_ = false;       ///< Perhaps: heard in this tick, while on, after so long a silence.
   bool on_when_heard_ = false;   ///< ENABLING or ACTIVE when it was heard.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;

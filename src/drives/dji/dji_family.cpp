@@ -53,6 +53,7 @@ class DjiFamily final : public MotorFamily {
     traits.no_load_rpm = model.no_load_rpm;
     traits.reported_rpm = static_cast<float>(32767.0 / model.gear_ratio);  // 16 bits of rpm of the rotor
     traits.min_feedback_hz = 200;
+    traits.unseen_start = std::chrono::milliseconds{300};  // no source: cautious
     traits.absolute = model.absolute_output;
     traits.reports_temperature = model.reports_temperature;
     traits.frozen_a = model.current.full_scale;

@@ -73,6 +73,7 @@ class LktechFamily final : public MotorFamily {
     traits.asked = true;
     // After a shorter silence the encoder shows which way it went.
     traits.restart_silence = std::chrono::milliseconds{100};
+    traits.unseen_start = std::chrono::milliseconds{300};  // its count may be as before; no source: cautious
     static constexpr DriveSetup kSetup{.tool = "LK Motor Tool (over its serial port)"};
     traits.setup = &kSetup;
     traits.frames = kLktechFrames;

@@ -280,6 +280,7 @@ MotorTraits vescTraits(const VescSettings& own) {
   traits.own_limit_key = "motor_current_max_a";
   traits.limit_by_report = true;
   traits.asked = false;
+  traits.unseen_start = std::chrono::milliseconds{300};  // before 6.00; no source: cautious
   traits.watchdog = own.ask_status;
   traits.reports_angle = own.angle != VescAngle::kNone;
   traits.modes = own.angle == VescAngle::kNone ? kVescModes : kVescModesWithAngle;
