@@ -65,7 +65,8 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     const bool homes = module.type->name() == "joint";
     if (homes && lie.kind == Lie::Kind::kHoming)
       own.set("homing_velocity_rpm", 0.25 * own.number("homing_velocity_rpm"));
-    if (module.type->name() == "gimbal" && lie.kind == Lie::Kind::kSilence)
+    const bool holds = homes || module.type->name() == "gimbal";
+    if (holds && lie.kind == Lie::Kind::kSilence)
       own.set("silence_max_s", 0.25 * own.number("silence_max_s"));
     if (homes && lie.kind == Lie::Kind::kTravel) own.set("home_angle_deg", kNearHomeDeg);
   }
@@ -76,9 +77,21 @@ RobotConfig Chaos::believed(const Lie& lie) const {
     motor.reduced.tolerance_rpm *= 0.25F;
   }
   if (lie.kind == Lie::Kind::kReducedEffort) motor.reduced.effort_share *= 0.25F;
-  if (lie.kind == Lie::Kind::kFallback) {
+  if (lie.kind == Lie::Kind::kFallback || lie.kind == Lie::Kind::kOnDisable ||
+      lie.kind == Lie::Kind::kOnEstop) {
     const auto& [bus, drive] = places_[lie.motor];
     motor.fallback = robotOf(lie.robot).buses[bus].motors[drive].fallback;
+  }
+  if (lie.kind == Lie::Kind::kFallbackTime) {
+    motor.fallback.hold_max /= 4;
+    motor.fallback.brake_max /= 4;
+    motor.fallback.ramp /= 4;
+  }
+  if (lie.kind == Lie::Kind::kSoftLimit) {
+    // About its middle: with the same gap on both sides it is on the same turn.
+    const double eighth_deg = (motor.shaping.angle_max_deg - motor.shaping.angle_min_deg) / 8.0;
+    motor.shaping.angle_min_deg += 3.0 * eighth_deg;
+    motor.shaping.angle_max_deg -= 3.0 * eighth_deg;
   }
   if (lie.kind == Lie::Kind::kFirstStep) motor.shaping.max_first_step_deg *= 0.1;
   if (lie.kind == Lie::Kind::kTurn) {
@@ -111,9 +124,12 @@ void Chaos::start() {
     for (std::size_t drive = 0; drive < config_.buses[bus].motors.size(); ++drive)
       places_.emplace_back(bus, drive);
   }
-  if (lie_ && lie_->kind == Lie::Kind::kFallback) {
+  if (lie_) {
     const auto& [bus, drive] = places_[lie_->motor];
-    config_.buses[bus].motors[drive].fallback.on_timeout = FallbackAction::kCoast;
+    auto& fallback = config_.buses[bus].motors[drive].fallback;
+    if (lie_->kind == Lie::Kind::kFallback) fallback.on_timeout = FallbackAction::kCoast;
+    if (lie_->kind == Lie::Kind::kOnDisable) fallback.on_disable = FallbackAction::kCoast;
+    if (lie_->kind == Lie::Kind::kOnEstop) fallback.on_estop = FallbackAction::kCoast;
   }
   standSomewhere();
   robot_ = std::make_unique<VirtualRobot>(config_);
@@ -121,6 +137,9 @@ void Chaos::start() {
   oracle_ = std::make_unique<Oracle>(lie_ ? believed(*lie_) : config_);
   if (lie_ && lie_->kind == Lie::Kind::kStuck) oracle_->deafen(lie_->motor);
   if (lie_ && lie_->kind == Lie::Kind::kZero) oracle_->misreadZeros(lie_->motor);
+  if (lie_ && lie_->kind == Lie::Kind::kValidity) oracle_->hasten();
+  if (lie_ && lie_->kind == Lie::Kind::kForeign) oracle_->suspect(lie_->motor);
+  if (lie_ && lie_->kind == Lie::Kind::kHold) oracle_->misplaceHold(lie_->motor);
   wires_.clear();
   for (auto& port : robot_->robot().simPorts()) wires_.emplace_back(port->descriptor());
   frozen_.reset();

@@ -40,7 +40,15 @@ class Chaos {
       kPace,           ///< Scans of a robot listen a minute longer.
       kHoming,         ///< The joints of a robot home at a quarter of their velocity.
       kTravel,         ///< They home within a tenth of their travel.
-      kSilence,        ///< The gimbals of a robot hold for a quarter of the time without a client.
+      kSilence,        ///< Gimbals and joints of a robot hold for a quarter of the time without a client.
+      kSoftLimit,      ///< A motor has the middle quarter of its travel.
+      kForeign,        ///< One foreign command is enough for a motor's FAULT.
+      kValidity,       ///< Commands of a robot are valid for a quarter of their time.
+      kEstop,          ///< The robot has got an e-stop.
+      kOnDisable,      ///< A motor that coasts when it is disabled does what its file says,
+      kOnEstop,        ///< or in an e-stop.
+      kHold,           ///< A motor is held a quarter of a turn farther on.
+      kFallbackTime,   ///< Fallbacks of a motor last for a quarter of their time.
     };
     std::size_t robot = 0;
     std::size_t motor = 0;

@@ -31,10 +31,11 @@ void Chaos::repairBuses() {
   }
 }
 
-// A second controller says what ours has said.
+// A second controller says what ours has said, or something else, to the same drive.
 void Chaos::secondController() {
   if (seen_count_ < seen_.size()) return;
   auto [bus, frame] = seen_[choices_.next(static_cast<std::uint32_t>(seen_.size()))];
+  if (choices_.oneIn(2)) frame.data[frame.length / 2] ^= 0x01U;
   const auto times = choices_.of<std::uint32_t>({1, 2, 3, 4, 60});
   const auto spacing = choices_.of<std::uint64_t>({0, 1, 20, 60});
   for (std::uint32_t i = 0; i < times; ++i) {
@@ -160,7 +161,7 @@ void Chaos::act(Action action) {
       break;
     case Action::kEstop:
       if (choices_.oneIn(2)) {
-        robot_->exchange().estop.store(true);
+        robot_->exchange().estop.store(!lie_ || lie_->kind != Lie::Kind::kEstop);
         oracle_->estopped();
       } else {
         order(Operation::kEstop, someMotors());

@@ -76,6 +76,10 @@ void Chaos::homeJoint(std::size_t module) {
   if (began && stateOf(module) == kFollows) judgeReference(module);
   ask(module, choices_.of<double>({kNoSignal, 20.0, 90.0, 1e9}), 0.0);
   ticks(choices_.of<std::uint64_t>({1, 60, 1'500}));
+  // Every client is silent: its hold ends.
+  if (choices_.oneIn(2)) return;
+  for (auto& inputs : inputs_) inputs.given = false;
+  ticks(choices_.of<std::uint64_t>({900, 1'500, 3'000}));
 }
 
 double Chaos::stateOf(std::size_t module) const { return robot_->snapshot().modules[module].outputs[0]; }

@@ -23,6 +23,8 @@ constexpr std::uint64_t kLongestAnswerTicks = 2'100;
 // Ticks without an echo that are a stall, and the period of probes of a stalled bus (docs/can-setup.md).
 constexpr std::uint64_t kStalledTicks = 5;
 constexpr Duration kProbeInterval = 50ms;
+// Share of the speed of standstill: a sample or two may be missed.
+constexpr double kSlow = 1.5;
 [[nodiscard]] std::string describe(const Told& told) {
   return fmt::format(
       "{}: effort {:.3f}, sum {:.3f}, {:.2f} rpm, {:.2f} deg ahead, {}{}at most {:.3f} and {:.1f} rpm",
@@ -65,12 +67,19 @@ Oracle::Oracle(const RobotConfig& config) : config_(config) {
   }
   for (std::size_t module = 0; module < config_.modules.size(); ++module) {
     const auto& own = config_.modules[module].settings.own;
-    if (config_.modules[module].type->name() == "gimbal") {
+    const bool gimbal = config_.modules[module].type->name() == "gimbal";
+    const bool joint_holds =
+        config_.modules[module].type->name() == "joint" && own.text("on_silence") == "hold";
+    if (gimbal || joint_holds) {
       const std::chrono::duration<double> silence_s{own.number("silence_max_s")};
-      holders_.push_back({module,
-                          {own.motor("yaw"), own.motor("pitch")},
-                          std::chrono::duration_cast<Duration>(silence_s),
-                          {}});
+      Holder holder{.module = module,
+                    .motors = {},
+                    .silence_max = std::chrono::duration_cast<Duration>(silence_s),
+                    .any_client = joint_holds};
+      for (const char* const key : {"yaw", "pitch"})
+        if (gimbal) holder.motors.push_back(own.motor(key));
+      if (joint_holds) holder.motors.push_back(own.motor("motor"));
+      holders_.push_back(holder);
     }
     if (config_.modules[module].type->name() != "joint" || own.text("homing") == "none") continue;
     Joint joint;
@@ -130,27 +139,19 @@ void Oracle::heard(std::size_t bus, const CanFrame& frame) {
   }
 }
 
-// To a drive with one frame a tick each is a command; others get questions, too.
+// A frame that its drive reads may be a command; one that makes it move is.
 void Oracle::foreign(std::size_t bus, const CanFrame& frame) {
-  std::vector<Motor*> readers;
-  bool command = false;
   for (auto& motor : motors_) {
     if (motor.bus != bus) continue;
     bool read = true;
-    bool moves = false;
     try {
-      read = motor.strangers_wire->said(frame) != 0;
-      moves = read && frame.type == FrameType::kData && !motor.strangers_wire->told().rests();
-      read |= motor.wire->obeys(frame);
+      read = motor.strangers_wire->said(frame) != 0 || motor.wire->obeys(frame);
     } catch (const Violation&) {  // forbidden to rc10d, not to others
     }
-    if (!read) continue;
-    motor.perhaps_foreign.push_back(frame.received);
-    readers.push_back(&motor);
-    command |= moves && motor.wire->toldOnceATick();
+    const bool steered = frame.type == FrameType::kData && motor.wire->steeredBy(frame);
+    if (read || steered) motor.perhaps_foreign.push_back(frame.received);
+    if (steered && !saidLately(motor, frame)) motor.foreign.push_back(frame.received);
   }
-  for (auto* motor : readers)
-    if (command && !saidLately(*motor, frame)) motor->foreign.push_back(frame.received);
 }
 
 // A frame of ours that comes twice may be the wire's doing.
@@ -164,6 +165,8 @@ bool Oracle::saidLately(const Motor& motor, const CanFrame& frame) {
 }
 
 void Oracle::commanded(const Command& command) {
+  client_heard_ = true;
+  const auto valid_for = (command.deadline - command.received) / (hasty_ ? 4 : 1);
   for (std::size_t i = 0; i < command.count; ++i) {
     auto& motor = motors_[command.setpoints[i].motor];
     motor.owned_until = std::max(motor.owned_until, command.deadline);
@@ -172,12 +175,13 @@ void Oracle::commanded(const Command& command) {
     if (command.setpoints[i].target.mode == ControlMode::kCoast) {
       motor.coast_asked = true;
     } else {
-      motor.driven_until = std::max(motor.driven_until, command.deadline);
+      motor.driven_until = std::max(motor.driven_until, command.received + valid_for);
     }
   }
 }
 
 void Oracle::ordered(const Order& order) {
+  client_heard_ = true;
   unanswered_[order.id] = tick_;
   if (order.operation == Operation::kScan) scans_asked_.push_back(order);
   if (order.operation == Operation::kZero) zeros_asked_[order.id] = order;
@@ -287,6 +291,9 @@ void Oracle::followFeedback(const Snapshot& snapshot) {
     const bool heard = motor.new_sample && (young || (of_pause && !motor.pause_forgiven));
     motor.pause_forgiven = !(motor.new_sample && young) && (motor.pause_forgiven || of_pause);
     const Duration ran = std::min(now_ - before_, 2 * config_.period());
+    const auto most_rpm = kSlow * static_cast<double>(motor.config->standstill_rpm);
+    const auto& measured = motor.wire->measured();
+    motor.stood = motor.stood || std::fabs(measured.velocity_rpm) <= most_rpm + measured.velocity_step_rpm;
     motor.unheard = !heard ? motor.unheard + ran : young ? now_ - motor.reported_at : Duration{};
     if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;
   }
@@ -301,7 +308,7 @@ void Oracle::setActions(Motor& motor, Actions actions) {
   motor.began_unmeasured = !fresh(motor);
   motor.acts_since_tick = tick_;
   motor.unbraked_ticks = 0;
-  motor.ends_at_standstill = false;
+  motor.ends_at_standstill = motor.stood = motor.of_estop = false;
 }
 
 void Oracle::judge(const Snapshot& snapshot, std::uint64_t periods, std::bitset<kMaxBuses> read,

@@ -82,6 +82,12 @@ class Oracle {
   void deafen(std::size_t motor) { deaf_ = motor; }
   /// Its zeros count as asked for a degree higher.
   void misreadZeros(std::size_t motor) { misread_ = motor; }
+  /// Targets are valid for a quarter of their time.
+  void hasten() { hasty_ = true; }
+  /// One foreign command is enough for it.
+  void suspect(std::size_t motor) { suspicious_ = motor; }
+  /// It was held a quarter of a turn farther on.
+  void misplaceHold(std::size_t motor) { misplaced_ = motor; }
   /// Outputs.
   void answered(const OrderResult& result);
   /// A frame on a bus.
@@ -149,6 +155,12 @@ class Oracle {
         false;  ///< Its feedback was not fresh then: the speed is that of the next sample.
     std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
+    bool stood = false;         ///< Since it began,
+    bool of_estop = false;      ///< of the robot.
+    double held_deg = kUnsaid;  ///< Where a hold of a loop of rc10d began.
+    MonotonicTime held_at{};    ///< Its last sample since,
+    double last_deg = 0.0;      ///< and where it was then.
+    int unheld_ticks = 0;
     bool rests_with_group = false;  ///< Disabled since another member was.
     bool new_sample = false;
     std::uint64_t cool_periods = 0;  ///< Below what derates it.
@@ -225,6 +237,7 @@ class Oracle {
     std::size_t module = 0;
     std::vector<std::size_t> motors;
     Duration silence_max{};
+    bool any_client = false;  ///< As long as some client of the robot is heard.
     MonotonicTime valid_until{};
   };
   /// A scan that goes on.
@@ -251,9 +264,10 @@ class Oracle {
   void judgeTogether(const Group& group, const Snapshot& snapshot);
   void followActions(std::size_t index, const MotorSnapshot& seen);
   void judgeCommand(std::size_t index, const MotorSnapshot& seen);
-  void judgeFallback(std::size_t index);
+  void judgeFallback(std::size_t index, const MotorSnapshot& seen);
   void judgeLettingGo(std::size_t index, Actions actions);
   void judgeBrake(std::size_t index, Actions actions);
+  void judgeHold(std::size_t index, const MotorSnapshot& seen, Actions actions);
   void judgeLimits(std::size_t index);
   void judgeTold(std::size_t index, const MotorSnapshot& seen);
   void judgeSlew(std::size_t index, const MotorSnapshot& seen);
@@ -275,6 +289,7 @@ class Oracle {
   void judgeZero(std::size_t index, const MotorSnapshot& seen);
   [[nodiscard]] bool isBounded(const Motor& motor, const MotorSnapshot& seen) const;
   void judgeSoftLimits(std::size_t index, const MotorSnapshot& seen);
+  void judgeLimitedPlace(std::size_t index, const MotorSnapshot& seen);
   void judgeReduced(std::size_t index, const MotorSnapshot& seen);
   void judgeReducedEffort(std::size_t index);
   void judgeStop(std::bitset<kMaxBuses> read, bool stopped);
@@ -328,6 +343,7 @@ class Oracle {
   MonotonicTime before_last_{};  ///< and the one before it.
   std::uint64_t tick_ = 0;
   bool begun_ = false;
+  bool client_heard_ = false;  ///< Since the last tick.
   std::uint64_t missed_ = 0;
   RobotStatus state_ = RobotStatus::kRun;
   bool estop_asked_ = false;
@@ -362,6 +378,9 @@ class Oracle {
   std::bitset<kMaxBuses> held_;     ///< Nothing but a probe of a stalled bus may be sent there in this tick.
   std::optional<std::size_t> deaf_;
   std::optional<std::size_t> misread_;
+  bool hasty_ = false;
+  std::optional<std::size_t> suspicious_;
+  std::optional<std::size_t> misplaced_;
   Visits visits_;
 };
 

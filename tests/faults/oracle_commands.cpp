@@ -1,6 +1,7 @@
 // Rules for commands: limits, slew, soft limits, fallbacks.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@ using namespace std::chrono_literals;
 
 // Ticks in which a loop turns its effort round: it starts without a jump.
 constexpr int kUnbrakedTicks = 300;
+constexpr double kFarFromHoldDeg = 20.0;
 constexpr double kFast = 0.3;  ///< Share of the no-load speed: a brake must oppose this.
 
 // Share of the time of a ramp and of the full speed: feedback is younger or older than what the oracle sees.
@@ -113,7 +115,7 @@ void Oracle::judgeCommand(std::size_t index, const MotorSnapshot& seen) {
   judgeSoftLimits(index, seen);
   if (watched && celsius >= static_cast<double>(guard.temperature_trip_c))
     require(index, motor.told.rests(), "driven although it is too hot");
-  if (seen.target.mode == ControlMode::kCoast) judgeFallback(index);
+  if (seen.target.mode == ControlMode::kCoast) judgeFallback(index, seen);
 }
 
 // Every field that can move the shaft, whatever the law. Of a spring its sum alone, so that a feed-forward
@@ -134,6 +136,9 @@ void Oracle::judgeLimits(std::size_t index) {
   const bool bounded = std::isfinite(told.most_effort);
   require(index, !bounded || told.most_effort <= motor.limit + slack + 1e-4 * motor.limit,
           "told a bound beyond its limit");
+  const bool leads = std::isfinite(told.most_ahead_deg) && motor.frames > 0;
+  require(index, !leads || std::fabs(told.ahead_deg) <= told.most_ahead_deg + told.ahead_step_deg,
+          "the point of its velocity is too far ahead");
   const auto most_rpm = static_cast<double>(motor.config->settings.velocity_limit_rpm);
   if (most_rpm <= 0.0 || motor.frames == 0) return;  // its last frame was judged by what it knew
   const double slack_rpm = told.velocity_step_rpm + 1e-4 * most_rpm;
@@ -202,38 +207,66 @@ void Oracle::judgeSlew(std::size_t index, const MotorSnapshot& seen) {
 
 // Beyond a soft limit, and not on its way back, nothing pushes on: no effort, no speed, no angle.
 void Oracle::judgeSoftLimits(std::size_t index, const MotorSnapshot& seen) {
-  auto& motor = motors_[index];
+  const auto& motor = motors_[index];
   const auto& shaping = motor.config->shaping;
   const auto& told = motor.told;
   const double angle_deg = seen.feedback.total_angle_deg;
+  const bool limited = std::isfinite(shaping.angle_min_deg) || std::isfinite(shaping.angle_max_deg);
   const bool known =
       seen.status == MotorStatus::kActive && seen.target.mode != ControlMode::kCoast && seen.feedback.zeroed;
-  if (!known) return;
-  if (told.law == Told::Law::kAngle && std::isfinite(told.ahead_deg)) {
-    const double place_deg = angle_deg + told.ahead_deg;
-    ++visits_.bounded;
-    // A shaft that is beyond one is held where its target has led it from its beginning.
-    const auto& start = motor.track.fields[TargetTrack::kPlace].start;
-    const bool above = angle_deg > shaping.angle_max_deg - kAngleSlackDeg && !start.empty();
-    const bool below = angle_deg < shaping.angle_min_deg + kAngleSlackDeg && !start.empty();
-    const double high_deg = std::max({shaping.angle_max_deg, angle_deg, above ? start.high : angle_deg});
-    const double low_deg = std::min({shaping.angle_min_deg, angle_deg, below ? start.low : angle_deg});
-    require(index, place_deg <= high_deg + kAngleSlackDeg && place_deg >= low_deg - kAngleSlackDeg,
-            "sent to a place beyond a soft limit");
-  }
+  if (!known || !limited) return;
+  judgeLimitedPlace(index, seen);
   const bool above = angle_deg >= shaping.angle_max_deg && seen.feedback.velocity_rpm >= 0.0F;
   const bool below = angle_deg <= shaping.angle_min_deg && seen.feedback.velocity_rpm <= 0.0F;
-  if (above || below) judgeFeedForward(index, above ? 1.0 : -1.0);
+  if (!above && !below) return;
+  const double outwards = above ? 1.0 : -1.0;
+  judgeFeedForward(index, outwards);
+  const auto mode = seen.target.mode;
   const bool follows_effort =
-      seen.target.mode == ControlMode::kCurrent || seen.target.mode == ControlMode::kVoltage;
-  const bool follows_speed = seen.target.mode == ControlMode::kVelocity && told.law == Told::Law::kVelocity;
-  if ((!above && !below) || (!follows_effort && !follows_speed)) return;
-  ++visits_.bounded;
+      mode == ControlMode::kCurrent || mode == ControlMode::kVoltage || mode == ControlMode::kDuty;
+  const bool follows_speed = mode == ControlMode::kVelocity;
+  // A loop of rc10d tells an effort, which may hold a load there: of its speed the state tells.
+  if (follows_speed && std::isfinite(seen.target_shaped)) {
+    ++visits_.bounded;
+    require(index, outwards * seen.target_shaped <= told.velocity_step_rpm + 1e-3,
+            "its speed leads on beyond a soft limit");
+  }
   // A drive whose speed of an effort is not known is told a speed in its place.
   const bool by_speed = told.law == Told::Law::kVelocity;
+  if (!follows_effort && !(follows_speed && by_speed)) return;
+  ++visits_.bounded;
   const double push = by_speed ? told.velocity_rpm : told.effort;
   const double step = by_speed ? told.velocity_step_rpm : told.effort_step;
-  require(index, !(above && push > step) && !(below && push < -step), "it is pushed on beyond a soft limit");
+  require(index, outwards * push <= step, "it is pushed on beyond a soft limit");
+}
+
+// As its frames tell it, of a spring, too, and as the state does. A shaft that is beyond a limit is held
+// where its target has led it from its beginning.
+void Oracle::judgeLimitedPlace(std::size_t index, const MotorSnapshot& seen) {
+  const auto& motor = motors_[index];
+  const auto& shaping = motor.config->shaping;
+  const auto& told = motor.told;
+  const double here_deg = seen.feedback.total_angle_deg;
+  const auto& start = motor.track.fields[TargetTrack::kPlace].start;
+  const bool above = here_deg > shaping.angle_max_deg - kAngleSlackDeg && !start.empty();
+  const bool below = here_deg < shaping.angle_min_deg + kAngleSlackDeg && !start.empty();
+  const double high_deg = std::max({shaping.angle_max_deg, here_deg, above ? start.high : here_deg});
+  const double low_deg = std::min({shaping.angle_min_deg, here_deg, below ? start.low : here_deg});
+  const double slack_deg = kAngleSlackDeg + told.ahead_step_deg;
+  const auto within = [&](double place_deg) {
+    ++visits_.bounded;
+    return place_deg <= high_deg + slack_deg && place_deg >= low_deg - slack_deg;
+  };
+  const bool spring = told.law == Told::Law::kSpring && told.stiff;
+  const bool of_now = seen.feedback.received == motor.heard_at;
+  if ((told.law == Told::Law::kAngle || (spring && of_now)) && std::isfinite(told.ahead_deg)) {
+    // Limits of its torque may move it past the shaft, where it pulls no more.
+    const bool yields = spring && motor.track.limited_ticks > 0 && std::isfinite(told.sum) &&
+                        told.sum * told.ahead_deg <= 0.0;
+    require(index, yields || within(here_deg + told.ahead_deg), "sent to a place beyond a soft limit");
+  }
+  if (actsByPlace(seen.target) && std::isfinite(seen.target_shaped))
+    require(index, within(seen.target_shaped), "led to a place beyond a soft limit");
 }
 
 // While the mode input is open, and the motor has had its time to come down: no more speed and effort are
@@ -340,7 +373,7 @@ bool Oracle::ramps(const Motor& motor) const {
   return std::fabs(motor.told.velocity_rpm) <= most_rpm + slack_rpm;
 }
 
-void Oracle::judgeFallback(std::size_t index) {
+void Oracle::judgeFallback(std::size_t index, const MotorSnapshot& seen) {
   auto& motor = motors_[index];
   const auto& fallback = motor.config->fallback;
   auto actions = motor.actions;
@@ -350,14 +383,15 @@ void Oracle::judgeFallback(std::size_t index) {
   }
   // A load that was held moves after that at the earliest.
   const bool holds = motor.actions == only(FallbackAction::kHold);
-  if (motor.ends_at_standstill && (!holds || now_ - motor.acts_since >= fallback.hold_max + kSettled))
-    actions |= only(FallbackAction::kCoast);
+  const bool may_end = holds ? now_ - motor.acts_since >= fallback.hold_max + kSettled : motor.stood;
+  if (motor.ends_at_standstill && may_end) actions |= only(FallbackAction::kCoast);
   const bool damps = motor.config->traits().frames.damp != Provision::kUnsupported;
   const auto bounded = [&](FallbackAction action, Duration most) {
     const auto bit = static_cast<std::size_t>(action);
     if (!actions.test(bit) || now_ - motor.acts_since < most) return;
     actions |= only(damps ? FallbackAction::kDamp : FallbackAction::kBrake);
-    if (action == FallbackAction::kHold && now_ - motor.acts_since >= most + 60ms) actions.reset(bit);
+    const bool ends = action == FallbackAction::kHold || (motor.of_estop && damps);
+    if (ends && now_ - motor.acts_since >= most + 60ms) actions.reset(bit);
   };
   bounded(FallbackAction::kHold, fallback.hold_max);
   bounded(FallbackAction::kBrake, fallback.brake_max);
@@ -380,6 +414,7 @@ void Oracle::judgeFallback(std::size_t index) {
     fail(index, "nobody commands it, and its command is not that of its fallback:" + words);
   judgeLettingGo(index, actions);
   judgeBrake(index, actions);
+  judgeHold(index, seen, actions);
 }
 
 // Rest fits everything that only resists; a motor that is to hold, brake, damp or ramp is not let go for
@@ -388,7 +423,7 @@ void Oracle::judgeLettingGo(std::size_t index, Actions actions) {
   auto& motor = motors_[index];
   const bool one = actions.count() == 1 && actions != only(FallbackAction::kCoast);
   const bool lags = mayLag(motor, tick_ - motor.acts_since_tick + 1);
-  if (!one || motor.ends_at_standstill || motor.was_hot || !fresh(motor) || lags) return;
+  if (!one || motor.was_hot || !fresh(motor) || lags) return;
   for (std::size_t i = 0; i < actions.size(); ++i)
     if (actions.test(i) && ofHost(*motor.config, static_cast<FallbackAction>(i))) return;
   ++visits_.kept;
@@ -408,6 +443,34 @@ void Oracle::judgeBrake(std::size_t index, Actions actions) {
   if (!must_brake || !fast || opposes) motor.unbraked_ticks = 0;
   if (must_brake && fast && !opposes && motor.new_sample) ++motor.unbraked_ticks;
   require(index, motor.unbraked_ticks < kUnbrakedTicks, "its brake does not act");
+}
+
+// And one that holds a shaft which is far from where that began, and comes no nearer. Where a reading leaps,
+// or is missing, its turn may be another one.
+void Oracle::judgeHold(std::size_t index, const MotorSnapshot& seen, Actions actions) {
+  auto& motor = motors_[index];
+  const bool must_hold = seen.acting == Acting::kHold && actions == only(FallbackAction::kHold) &&
+                         !motor.was_hot && motor.host_holds;
+  const double here_deg = seen.feedback.total_angle_deg;
+  const auto gap = seen.feedback.received - std::exchange(motor.held_at, seen.feedback.received);
+  const double way_deg = std::fabs(here_deg - std::exchange(motor.last_deg, here_deg));
+  const double rpm = std::fabs(motor.wire->measured().velocity_rpm);
+  const bool follows = gap <= motor.config->feedback_timeout / 4 &&
+                       way_deg <= 1.0 + 9.0 * rpm * static_cast<double>(seconds(gap));
+  if (!must_hold || !follows) motor.held_deg = kUnsaid;
+  if (must_hold && std::isnan(motor.held_deg)) {
+    motor.held_deg = here_deg + (misplaced_ == index ? 90.0 : 0.0);
+    motor.unheld_ticks = 0;
+  }
+  if (!must_hold || !motor.new_sample) return;
+  const double away_deg = here_deg - motor.held_deg;
+  const auto& told = motor.told;
+  const double push = told.law == Told::Law::kVelocity ? told.velocity_rpm : told.effort;
+  const bool opposes = push * away_deg < 0.0 || motor.wire->measured().velocity_rpm * away_deg < 0.0;
+  if (std::fabs(away_deg) > kFarFromHoldDeg) ++visits_.held_far;
+  const bool fails = std::fabs(away_deg) > kFarFromHoldDeg && !opposes;
+  motor.unheld_ticks = fails ? motor.unheld_ticks + 1 : 0;
+  require(index, motor.unheld_ticks < kUnbrakedTicks, "its hold does not act");
 }
 
 }  // namespace rc10::test

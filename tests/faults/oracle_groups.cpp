@@ -116,6 +116,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   const auto coast = only(FallbackAction::kCoast);
   const auto before = motor.status;
   const auto after = seen.status;
+  if (lost(after) || lost(before) || seen.target.mode != ControlMode::kCoast) motor.held_deg = kUnsaid;
   if (lost(after) || lost(before)) return setActions(motor, coast);
   if (seen.target.mode != ControlMode::kCoast) return setActions(motor, only(fallback.on_timeout));
   if (before == MotorStatus::kActive && after != MotorStatus::kActive) {
@@ -130,6 +131,8 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     require(index, actions.any(), "no longer ACTIVE for no reason");
     setActions(motor, actions);
     motor.ends_at_standstill = asked;
+    motor.of_estop = estop_asked_ && actions == only(fallback.on_estop) &&
+                     (motor.group == kNoGroup || !groups_[motor.group].stops_now);
     return;
   }
   // A hold after a disable stops with its group.
@@ -147,7 +150,9 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
     if (may_have_ended || motor.disables_asked > 0 || motor.enable_asked || motor.coast_asked)
       actions |= coast;
     if (motor.disables_asked > 0 || motor.enable_asked) actions |= motor.actions | only(fallback.on_disable);
-    return setActions(motor, actions);
+    setActions(motor, actions);
+    motor.of_estop = actions == only(fallback.on_estop);
+    return;
   }
   // Enabled and stopped within a tick.
   const bool stopped_with_group =

@@ -1,6 +1,7 @@
 // Rules for joints that home, and for modules that hold.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "faults/oracle.hpp"
 
@@ -15,6 +16,8 @@ constexpr double kJointFollows = 2.0;
 constexpr Duration kJointLetGo = 1s;
 // A module's targets act for this long when it commands no more.
 constexpr Duration kLapse = 25ms;
+// Messages come so often.
+constexpr Duration kStillHeard = 50ms;
 // Ticks within which `home` has begun a homing, or begins none.
 constexpr int kRiseTicks = 3;
 // Ticks within which another client's command has ended it.
@@ -23,8 +26,9 @@ constexpr int kOthersTicks = 3;
 }  // namespace
 
 void Oracle::signalled(const SignalMessage& message) {
+  client_heard_ = true;
   for (auto& holder : holders_)
-    if (holder.module == message.module) holder.valid_until = message.deadline;
+    if (holder.module == message.module && !holder.any_client) holder.valid_until = message.deadline;
   for (auto& joint : joints_) {
     if (joint.module != message.module) continue;
     const bool high = message.values[1] >= 0.5;
@@ -35,15 +39,18 @@ void Oracle::signalled(const SignalMessage& message) {
   }
 }
 
-// A gimbal holds its direction for some time when nobody commands it, and then for nobody.
+// A gimbal holds its direction for some time when nobody commands it, a joint its angle when no client of the
+// robot is heard; and then for nobody.
 void Oracle::judgeHolders(const Snapshot& snapshot) {
-  for (const auto& holder : holders_) {
+  const bool heard = std::exchange(client_heard_, false);
+  for (auto& holder : holders_) {
+    if (heard && holder.any_client) holder.valid_until = now_ + kStillHeard;
     const auto name = config_.modules[holder.module].settings.name;
     const bool over = now_ >= holder.valid_until + holder.silence_max + kLapse + 2 * (now_ - before_);
     for (const auto motor : holder.motors) {
       const bool holds = snapshot.motors[motor].owner.view() == name;
       if (holds && now_ >= holder.valid_until) ++visits_.held_for_nobody;
-      require(motor, !over || !holds, "it holds its direction for nobody, and does not end");
+      require(motor, !over || !holds, "it holds for nobody, and does not end");
     }
   }
 }

@@ -39,13 +39,15 @@ void Oracle::judgeStatus(std::size_t index, const MotorSnapshot& seen, RobotStat
 void Oracle::judgeForeign(std::size_t index, const MotorSnapshot& seen) {
   auto& motor = motors_[index];
   const auto& limit = config_.buses[motor.bus].foreign;
-  const auto enough = [&limit](const std::deque<MonotonicTime>& times) {
-    const auto frames = static_cast<std::size_t>(limit.frames);
+  const bool suspicious = suspicious_ == index;
+  const auto enough = [&limit, suspicious](const std::deque<MonotonicTime>& times) {
+    const auto frames = static_cast<std::size_t>(suspicious ? 1 : limit.frames);
     for (std::size_t i = frames - 1; i < times.size(); ++i)
       if (times[i] - times[i - frames + 1] <= limit.within) return true;
     return false;
   };
   const bool newly = seen.fault == FaultCode::kForeignCommands && motor.fault != seen.fault;
+  if (newly) ++motor.visits->foreign;
   require(index, !newly || enough(motor.perhaps_foreign), "in FAULT for commands that nobody has sent");
   const bool there = !lost(motor.status) && seen.status != MotorStatus::kOffline;
   require(index, !there || !enough(motor.foreign) || seen.status == MotorStatus::kFault,

@@ -318,7 +318,7 @@ void Oracle::judgePlace(std::size_t index, const MotorSnapshot& seen) {
     place.slack = 1e-3;
     place.turn = seen.target.mode == ControlMode::kAngle ? 360.0 : 0.0;
   }
-  if (spring) place.towards.take(here_deg);
+  if (spring || told.led) place.towards.take(here_deg);
   if (!actsByPlace(seen.target)) place.value = kUnsaid;
   // A shaft that is farther out than its limits may be led back at once, and not out again.
   if (isBounded(motor, seen)) place.towards.take(motor.track.places);
@@ -418,6 +418,7 @@ void Oracle::judgeZero(std::size_t index, const MotorSnapshot& seen) {
     require(index, !zero.accepted || !stays_on, "a zero was set while it was enabled");
     require(index, !zero.accepted || seen.feedback.samples > 0, "a zero was set without feedback");
   }
+  motor.held_deg = kUnsaid;  // it is called otherwise now
   const auto& last = zeros.back();
   const double off_deg = std::fabs(seen.feedback.total_angle_deg - last.value_deg);
   require(index, !last.accepted || off_deg <= 1e-6 + 1e-9 * std::fabs(last.value_deg),

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,7 +93,7 @@ constexpr std::size_t kRobotWithAGimbal = 7;
 TEST(OracleSeesOfAGimbal, ThatItHoldsForNobody) {
   ASSERT_EQ(robotOf(kRobotWithAGimbal).modules.at(1).type->name(), "gimbal");
   EXPECT_THAT(findingOf({.robot = kRobotWithAGimbal, .kind = Kind::kSilence}),
-              ::testing::HasSubstr("holds its direction for nobody"));
+              ::testing::HasSubstr("holds for nobody"));
 }
 
 constexpr std::size_t kRobotWithSlewLimits = 5;
@@ -164,6 +167,78 @@ TEST_P(OracleSeesAZero, ThatIsAnother) {
   EXPECT_THAT(findingOf(Kind::kZero), ::testing::HasSubstr("not the one that its zero was set to"));
 }
 
+/// The motors of the soak that have one.
+class OracleSeesASoftLimit : public OracleSees {};
+
+TEST_P(OracleSeesASoftLimit, ThatIsNearer) {
+  EXPECT_THAT(findingOf(Kind::kSoftLimit), ::testing::HasSubstr("beyond a soft limit"));
+}
+
+/// The first motor of each family.
+class OracleSeesAStranger : public OracleSees {};
+
+TEST_P(OracleSeesAStranger, WhoseCommandsAreNoFault) {
+  EXPECT_THAT(findingOf(Kind::kForeign),
+              ::testing::AllOf(::testing::HasSubstr(", motor " + GetParam().motor_name + " ("),
+                               ::testing::HasSubstr("somebody else commands its drive")));
+}
+
+/// The first motor of each robot.
+class OracleSeesATimeout : public OracleSees {};
+
+TEST_P(OracleSeesATimeout, ThatComesLate) {
+  EXPECT_THAT(findingOf(Kind::kValidity), ::testing::HasSubstr("without a valid command"));
+}
+
+TEST(OracleSeesOfAnEstop, ThatItIsLost) {
+  EXPECT_THAT(findingOf({.robot = 0, .kind = Kind::kEstop}), ::testing::HasSubstr("an e-stop was lost"));
+}
+
+/// The motors whose drive does what their `on_disable` says.
+class OracleSeesADisable : public OracleSees {};
+
+TEST_P(OracleSeesADisable, ThatLetsGo) {
+  EXPECT_THAT(findingOf(Kind::kOnDisable),
+              ::testing::AnyOf(::testing::HasSubstr("its fallback lets go"),
+                               ::testing::HasSubstr("not that of its fallback")));
+}
+
+/// And their `on_estop`.
+class OracleSeesAnEstop : public OracleSees {};
+
+TEST_P(OracleSeesAnEstop, ThatLetsGo) {
+  EXPECT_THAT(findingOf(Kind::kOnEstop), ::testing::AnyOf(::testing::HasSubstr("its fallback lets go"),
+                                                          ::testing::HasSubstr("not that of its fallback")));
+}
+
+/// The motors whose drive holds, and damps afterwards.
+class OracleSeesATimeOfAHold : public OracleSees {};
+
+TEST_P(OracleSeesATimeOfAHold, ThatIsLonger) {
+  EXPECT_THAT(findingOf(Kind::kFallbackTime), ::testing::HasSubstr("not that of its fallback"));
+}
+
+constexpr std::size_t kMotorThatBrakes = 0;
+
+TEST(OracleSeesOfAFallback, ThatABrakeInAnEstopLastsLonger) {
+  ASSERT_EQ(robotOf(0).buses.front().motors.at(kMotorThatBrakes).fallback.on_estop, FallbackAction::kBrake);
+  EXPECT_THAT(findingOf({.robot = 0, .motor = kMotorThatBrakes, .kind = Kind::kFallbackTime}),
+              ::testing::HasSubstr("not that of its fallback"));
+}
+
+constexpr std::size_t kMotorThatHolds = 4;
+
+TEST(OracleSeesOfAFallback, ThatALoopHoldsAnotherPlace) {
+  ASSERT_EQ(robotOf(0).buses.at(1).motors.at(1).fallback.on_timeout, FallbackAction::kHold);
+  EXPECT_THAT(findingOf({.robot = 0, .motor = kMotorThatHolds, .kind = Kind::kHold}),
+              ::testing::HasSubstr("its hold does not act"));
+}
+
+TEST(OracleSeesOfAJoint, ThatItHoldsForNobody) {
+  EXPECT_THAT(findingOf({.robot = kRobotWithAJoint, .kind = Kind::kSilence}),
+              ::testing::HasSubstr("holds for nobody"));
+}
+
 constexpr std::size_t kRobotWithAGroup = 0;
 
 TEST(OracleSeesOfAGroup, ThatAMemberGoesOnWithoutTheOthers) {
@@ -199,9 +274,8 @@ bool isToldASpeed(const MotorConfig& motor) {
   return follows && motor.family->name() != "DJI" && motor.settings.velocity_limit_rpm > 0.0F;
 }
 
-/// A drive of this motor does what its `on_timeout` says, and is at rest while nothing is asked of it.
-bool keepsByItself(const MotorConfig& motor) {
-  const auto action = motor.fallback.on_timeout;
+/// The drive of this motor does this, and is at rest while nothing is asked of it.
+bool keepsByItself(const MotorConfig& motor, FallbackAction action) {
   return action != FallbackAction::kCoast && !ofHost(motor, action) && makeWire(motor)->idlesAtRest();
 }
 
@@ -211,7 +285,39 @@ INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAnEffort, ::testing::ValuesIn(moto
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesASpeed, ::testing::ValuesIn(motorsWith(isToldASpeed)),
                          [](const auto& param) { return param.param.name; });
 
-INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAFallback, ::testing::ValuesIn(motorsWith(keepsByItself)),
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAFallback,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           return keepsByItself(motor, motor.fallback.on_timeout);
+                         })),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesADisable,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           return keepsByItself(motor, motor.fallback.on_disable);
+                         })),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAnEstop,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           return keepsByItself(motor, motor.fallback.on_estop);
+                         })),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesATimeOfAHold,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           const auto& frames = motor.traits().frames;
+                           return motor.fallback.on_timeout == FallbackAction::kHold &&
+                                  frames.hold == Provision::kFrame && frames.damp == Provision::kFrame &&
+                                  motor.fallback.hold_max <= std::chrono::seconds{2};
+                         })),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesASoftLimit,
+                         ::testing::ValuesIn(motorsWith([](const MotorConfig& motor) {
+                           // Without a reference it has none for most of the time.
+                           const bool referenced = motor.traits().absolute || motor.settings.zero_at_power_on;
+                           return referenced && std::isfinite(motor.shaping.angle_max_deg);
+                         })),
                          [](const auto& param) { return param.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(EachMotor, OracleSeesAReducedEffort,
@@ -243,6 +349,17 @@ std::vector<Case> firstMotors() {
   std::erase_if(cases, [](const Case& each) { return each.motor != 0; });
   return cases;
 }
+
+std::vector<Case> firstOfFamilies() {
+  std::set<std::string> seen;
+  return motorsWith([&seen](const MotorConfig& motor) { return seen.emplace(motor.family->name()).second; });
+}
+
+INSTANTIATE_TEST_SUITE_P(EachFamily, OracleSeesAStranger, ::testing::ValuesIn(firstOfFamilies()),
+                         [](const auto& param) { return param.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(EachRobot, OracleSeesATimeout, ::testing::ValuesIn(firstMotors()),
+                         [](const auto& param) { return param.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(EachRobot, OracleSeesAZero, ::testing::ValuesIn(firstMotors()),
                          [](const auto& param) { return param.param.name; });

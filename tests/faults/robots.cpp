@@ -18,7 +18,7 @@ buses:
     type: sim
     motors:
       - {name: left, model: M3508, id: 1, reduced_velocity_rpm: 60, reduced_within_ms: 200,
-         reduced_current_a: 5, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake,
+         reduced_current_a: 5, current_limit_a: 10, on_timeout: brake, on_disable: damp, on_estop: brake, brake_max_s: 0.5,
          zero: power_on}
       - {name: right, model: M3508, id: 2, direction: -1, on_timeout: damp, on_disable: ramp, on_estop: damp,
          ramp_s: 0.4, current_slew_a_per_s: 100, velocity_slew_rpm_per_s: 2000}
@@ -30,9 +30,9 @@ buses:
          on_estop: damp, angle_min_deg: -90, angle_max_deg: 90, angle_slew_deg_per_s: 360, max_first_step_deg: 30,
          following_error_deg: 30}
       - {name: pitch, model: GM6020, id: 1, command: voltage, voltage_limit_v: 12, on_timeout: hold, on_disable: damp,
-         on_estop: brake, hold_max_s: 1}
+         on_estop: brake, hold_max_s: 1, brake_max_s: 0.5}
       - {name: lift, model: M2006, id: 4, current_limit_a: 6, on_timeout: hold, on_disable: hold, on_estop: hold,
-         hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify,
+         hold_max_s: 0.5, angle_min_deg: 0, angle_max_deg: 2000, stall_ms: 300, stall_action: notify, zero: power_on,
          simulated: {load_torque_nm: 0.3, coulomb_nm: 0.05}}
 groups:
   - {name: drive, motors: [left, right, feeder], on_member_offline: stop_group, on_return: rearm_at_rest}
@@ -45,7 +45,7 @@ buses:
     motors:
       - {name: shoulder, model: DM4310, id: 1, master_id: 17, current_limit_a: 4, velocity_limit_rpm: 100,
          reduced_current_a: 2, reduced_within_ms: 200,
-         on_timeout: hold, on_disable: damp, on_estop: brake, hold_max_s: 0.5,
+         on_timeout: hold, on_disable: damp, on_estop: brake, hold_max_s: 0.5, brake_max_s: 0.5,
          angle_min_deg: -90, angle_max_deg: 90, zero: power_on}
       - {name: wheel, model: DMH6215, id: 3, master_id: 19, control: velocity, velocity_limit_rpm: 120, direction: -1,
          reduced_velocity_rpm: 20, reduced_within_ms: 200,
@@ -85,7 +85,8 @@ buses:
     motors:
       - {name: belt, model: ODrive_S1, id: 3, reduced_velocity_rpm: 60, reduced_within_ms: 200, reduced_current_a: 10,
          torque_constant_nm_per_a: 0.0551, current_limit_a: 20,
-         velocity_limit_rpm: 600, on_timeout: brake, on_disable: ramp, on_estop: brake, feedback_hz: 200}
+         velocity_limit_rpm: 600, on_timeout: brake, on_disable: ramp, on_estop: brake, brake_max_s: 0.5,
+         feedback_hz: 200}
       - {name: winch, model: ODrive_v3, id: 4, torque_constant_nm_per_a: 0.04, current_limit_a: 15,
          velocity_limit_rpm: 400, direction: -1, gear_ratio: 4, on_timeout: hold, on_estop: hold, hold_max_s: 0.5,
          feedback_hz: 200, current_slew_a_per_s: 100}
@@ -147,7 +148,7 @@ buses:
     type: sim
     motors:
       - {name: front_left, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
-         id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake, stall_ms: 100}
+         id: 1, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake, brake_max_s: 0.5, stall_ms: 100}
       - {name: front_right, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
          id: 2, current_limit_a: 8, on_timeout: damp, on_disable: damp, on_estop: brake}
       - {name: rear_left, model: M3508, reduced_velocity_rpm: 60, reduced_within_ms: 200,
@@ -287,7 +288,7 @@ buses:
   - name: wheels
     type: sim
     motors:
-      - {name: wheel_left, model: M3508, id: 1, current_limit_a: 8, on_timeout: damp, on_estop: brake}
+      - {name: wheel_left, model: M3508, id: 1, current_limit_a: 8, on_timeout: damp, on_estop: brake, brake_max_s: 0.3}
       - {name: wheel_right, model: M3508, id: 2, current_limit_a: 8, on_timeout: damp, on_estop: brake}
       - {name: wheel_middle, model: M2006, id: 3, current_limit_a: 5, on_timeout: damp, on_estop: brake}
   - name: tracks

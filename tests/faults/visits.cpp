@@ -34,6 +34,7 @@ void Visits::add(const Visits& other) {
   reduced += other.reduced;
   reduced_efforts += other.reduced_efforts;
   kept += other.kept;
+  held_far += other.held_far;
   held_for_nobody += other.held_for_nobody;
   homing += other.homing;
   homed += other.homed;
@@ -46,6 +47,7 @@ void Visits::add(const Visits& other) {
   rearmed += other.rearmed;
   for (const auto& [name, visited] : other.motors) {
     motors[name].active += visited.active;
+    motors[name].foreign += visited.foreign;
     sum(motors[name].laws, visited.laws);
     sum(motors[name].modes, visited.modes);
     motors[name].supported = visited.supported;
@@ -95,6 +97,7 @@ std::string Visits::text() const {
       "\nsoft starts of efforts {}, speeds {}, places {}, velocity feed-forwards {}, torque feed-forwards {}",
       softened[0], softened[1], softened[2], softened[3], softened[4]);
   out += fmt::format("\nfirst angles {}, turns at power-up {}, zeros {}", first_angles, turns, zeros);
+  out += fmt::format("\nheld by loops of rc10d, and far away, samples: {}", held_far);
   out += fmt::format("\nheld for nobody, thousand ticks: {}", held_for_nobody / 1000);
   out += fmt::format("\nhomings that found their end: {}", homed);
   out += fmt::format("\nscans: {} begun, {} made to their end, {} refused; {} questions judged", scans,
@@ -145,6 +148,7 @@ std::string Visits::idleInAnHour() const {
                 {"first angles", first_angles},
                 {"turns at power-up", turns},
                 {"reduced efforts", reduced_efforts},
+                {"a hold far from its place", held_far},
                 {"a held direction", held_for_nobody},
                 {"homing", homing},
                 {"a homing that found its end", homed},
@@ -173,6 +177,7 @@ std::string Visits::idleInAnHour() const {
   // Some motors have no reference for most of the time: of modes that need one, each family's.
   std::map<std::string, std::uint64_t> of_families;
   for (const auto& [name, visited] : motors) {
+    of_families[name.substr(0, name.find(' ')) + " commanded by somebody else"] += visited.foreign;
     for (int number = 1; number < kControlModeCount; ++number) {
       const auto mode = static_cast<ControlMode>(number);
       if (!visited.supported.contains(mode)) continue;

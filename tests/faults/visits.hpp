@@ -19,6 +19,7 @@ struct MotorVisits {
   std::uint64_t active = 0;                              ///< Ticks.
   std::array<std::uint64_t, 7> laws{};                   ///< Ticks not at rest, by Told::Law.
   std::array<std::uint64_t, kControlModeCount> modes{};  ///< Ticks with a target of this mode.
+  std::uint64_t foreign = 0;                             ///< FAULTs for commands of somebody else.
   ModeSet supported;                                     ///< The modes that it has.
 };
 
@@ -44,6 +45,7 @@ struct Visits {
   std::uint64_t zeros = 0;                       ///< answers to requests for a zero that were judged.
   std::uint64_t reduced = 0;                     ///< Frames of motors in reduced mode that were judged,
   std::uint64_t reduced_efforts = 0;             ///< and those of them that tell an effort that is reduced.
+  std::uint64_t held_far = 0;         ///< Samples of motors that a loop of rc10d holds, far from where.
   std::uint64_t held_for_nobody = 0;  ///< Ticks of motors that a gimbal held after its client fell silent.
   std::uint64_t homing = 0;           ///< Ticks in which a joint homed,
   std::uint64_t homed = 0;            ///< and homings that found their end.

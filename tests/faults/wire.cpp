@@ -1,8 +1,10 @@
 #include "faults/wire.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <string_view>
@@ -117,6 +119,17 @@ double onScale(std::uint32_t code, double low, double high, unsigned bits) {
 
 bool plainFrame(const CanFrame& frame, std::size_t length) {
   return frame.type == FrameType::kData && !frame.fd && frame.length == length;
+}
+
+bool saysSomething(const CanFrame& frame) {
+  const auto bytes = frame.payload();
+  return std::any_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte != 0; });
+}
+
+bool lawOfTorque(const CanFrame& frame, std::size_t stiffness, std::size_t damping, std::size_t torque) {
+  const auto code = static_cast<int>(bitsAt(frame, torque, 12));
+  return bitsAt(frame, stiffness, 12) != 0 || bitsAt(frame, damping, 12) != 0 ||
+         std::abs(2 * code - 4095) > 1;
 }
 
 bool isQuestionOfScan(const CanFrame& frame) {

@@ -30,15 +30,17 @@ struct Told {
     kBrake,     ///< Resists motion, whichever way.
   };
   Law law = Law::kOff;
-  double effort = 0.0;           ///< In all laws but kEffort and kDuty the feed-forward.
-  double sum = 0.0;              ///< kSpring: the effort as of the last feedback; kUnsaid: not known.
-  double sum_step = 0.0;         ///< And how much of it is rounding.
-  double velocity_rpm = 0.0;     ///< Beside an angle: the feed-forward.
-  double ahead_deg = kUnsaid;    ///< The place to go to, seen from the last feedback.
-  double ahead_step_deg = 0.0;   ///< Resolution of that place,
-  double ahead_turn_deg = 0.0;   ///< which may be so many of these off; 0: it is the one.
-  bool stiff = false;            ///< kSpring: with a stiffness,
-  bool damped = false;           ///< with a damping.
+  double effort = 0.0;              ///< In all laws but kEffort and kDuty the feed-forward.
+  double sum = 0.0;                 ///< kSpring: the effort as of the last feedback; kUnsaid: not known.
+  double sum_step = 0.0;            ///< And how much of it is rounding.
+  double velocity_rpm = 0.0;        ///< Beside an angle: the feed-forward.
+  double ahead_deg = kUnsaid;       ///< The place to go to, seen from the last feedback.
+  double ahead_step_deg = 0.0;      ///< Resolution of that place,
+  double ahead_turn_deg = 0.0;      ///< which may be so many of these off; 0: it is the one.
+  double most_ahead_deg = kUnsaid;  ///< kVelocity: it leads to a point that is at most so far ahead.
+  bool led = false;     ///< kAngle: its drive goes the shortest way, so it may be told a nearer place.
+  bool stiff = false;   ///< kSpring: with a stiffness,
+  bool damped = false;  ///< with a damping.
   double most_effort = kUnsaid;  ///< The bound of the effort that was told with it.
   double most_rpm = kUnsaid;     ///< And that of the speed.
   double effort_step = 0.0;      ///< Resolution of the fields.
@@ -81,6 +83,8 @@ class Wire {
   virtual std::uint64_t said(const CanFrame& frame) = 0;
   /// It is a command to this drive of a kind that rc10d never sends.
   [[nodiscard]] virtual bool obeys(const CanFrame&) const { return false; }
+  /// A data frame that makes this drive move, whoever sends it: neither rest, nor a question, nor a setting.
+  [[nodiscard]] virtual bool steeredBy(const CanFrame& frame) const = 0;
   /// It changes something in this drive.
   [[nodiscard]] virtual bool changedBy(const CanFrame& frame) const { return obeys(frame); }
   /// Takes in a frame from the bus. Whether it is feedback of this drive that could be a sample.
@@ -138,6 +142,11 @@ class Wire {
 /// Linear, from 0 to 2^bits - 1.
 [[nodiscard]] double onScale(std::uint32_t code, double low, double high, unsigned bits);
 [[nodiscard]] bool plainFrame(const CanFrame& frame, std::size_t length);
+/// Bytes that are not 0.
+[[nodiscard]] bool saysSomething(const CanFrame& frame);
+/// A stiffness, a damping or a torque in fields of twelve bits that begin at these; half a step is none.
+[[nodiscard]] bool lawOfTorque(const CanFrame& frame, std::size_t stiffness, std::size_t damping,
+                               std::size_t torque);
 /// The questions of a scan, as docs/rc10ctl.md has them: PING of VESC tools, type 0 of RobStride.
 [[nodiscard]] bool isQuestionOfScan(const CanFrame& frame);
 

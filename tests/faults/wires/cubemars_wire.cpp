@@ -45,6 +45,20 @@ class CubemarsWire final : public Wire {
     return kAllBytes;
   }
 
+  // Frames on the id of a MIT drive that begin with it are its answers.
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    if (frame.type != FrameType::kData || frame.fd || frame.id.extended == mit_) return false;
+    if (mit_) {
+      return frame.id.value == own_id_ && frame.length == 8 && frame.data[0] != own_id_ && !isOrder(frame) &&
+             lawOfTorque(frame, 28, 40, 52);
+    }
+    const std::uint32_t command = frame.id.value >> 8U;
+    if ((frame.id.value & 0xFFU) != own_id_) return false;
+    if (command == 8) return frame.length == 8 && lawOfTorque(frame, 0, 12, 52);
+    const bool moves = command <= 4 || command == 6;
+    return moves && saysSomething(frame);
+  }
+
   bool heard(const CanFrame& frame) override { return mit_ ? heardMit(frame) : heardServo(frame); }
 
   [[nodiscard]] Told told() const override {
@@ -54,6 +68,11 @@ class CubemarsWire final : public Wire {
   }
 
  private:
+  [[nodiscard]] static bool isOrder(const CanFrame& frame) {
+    return std::all_of(frame.data.begin(), frame.data.begin() + 7,
+                       [](std::uint8_t byte) { return byte == 0xFF; });
+  }
+
   void saidServo(const CanFrame& frame) {
     const auto raw = static_cast<double>(int32Of(bigEndian(frame, 0, 4)));
     const std::uint32_t command = frame.id.value >> 8U;
@@ -93,8 +112,7 @@ class CubemarsWire final : public Wire {
 
   void saidMit(const CanFrame& frame) {
     if (frame.length != 8) refuse(frame, "a command frame of another length");
-    const bool order = std::all_of(frame.data.begin(), frame.data.begin() + 7,
-                                   [](std::uint8_t byte) { return byte == 0xFF; });
+    const bool order = isOrder(frame);
     if (order && frame.data[7] == 0xFE) refuse(frame, "it makes where it stands its zero");
     if (order && (frame.data[7] == 0xFC || frame.data[7] == 0xFD)) {
       on_ = frame.data[7] == 0xFC;

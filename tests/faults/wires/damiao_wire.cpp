@@ -17,6 +17,7 @@ constexpr std::uint8_t kSave = 0xAA;
 constexpr std::uint8_t kTimeoutRegister = 9;
 constexpr std::uint8_t kControlRegister = 10;
 constexpr std::uint8_t kLastRegister = 81;
+constexpr double kStepsPerMs = 20.0;  // of the timeout: 50 us
 constexpr double kDamiaoStiffnessMax = 500.0;
 constexpr double kDamiaoDampingMax = 5.0;
 
@@ -26,6 +27,8 @@ class DamiaoWire final : public Wire {
       : Wire(config),
         own_(damiaoSettings(config.settings)),
         mode_(static_cast<unsigned>(own_.control)),
+        watchdog_steps_(static_cast<std::uint32_t>(
+            std::max(1.0, std::round(config.settings.own.number("watchdog_ms") * kStepsPerMs)))),
         reading_(2.0 * own_.scale.p_max_rad * 65536.0 / 65535.0, own_.scale.v_max_rad_s,
                  damiaoFastestRadS(*findDamiaoModel(config.settings.model), own_.scale)) {
     measured_.velocity_step_rpm = std::fabs(rpmOfRadPerS(own_.scale.v_max_rad_s)) * 2.0 / 4095.0;
@@ -38,14 +41,19 @@ class DamiaoWire final : public Wire {
     if (frame.id != command_id_) return 0;
     if (frame.type != FrameType::kData || frame.fd != own_.can_fd)
       refuse(frame, "a command frame of another form");
-    const auto seven = std::all_of(frame.data.begin(), frame.data.begin() + 7,
-                                   [](std::uint8_t byte) { return byte == 0xFF; });
-    if (frame.length == 8 && seven && frame.data[7] >= 0xFB) {
+    if (frame.length == 8 && isSpecial(frame)) {
       saidSpecial(frame);
     } else {
       saidCommand(frame);
     }
     return kAllBytes;
+  }
+
+  // In each of its modes.
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    const bool command = !frame.id.extended && frame.id.value < 0x400 && frame.type == FrameType::kData &&
+                         (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id());
+    return command && !(frame.length == 8 && isSpecial(frame));
   }
 
   bool heard(const CanFrame& frame) override {
@@ -77,19 +85,36 @@ class DamiaoWire final : public Wire {
   }
 
  private:
-  std::uint64_t saidOfRegister(const CanFrame& frame) const {
+  [[nodiscard]] static bool isSpecial(const CanFrame& frame) {
+    const auto seven = std::all_of(frame.data.begin(), frame.data.begin() + 7,
+                                   [](std::uint8_t byte) { return byte == 0xFF; });
+    return seven && frame.data[7] >= 0xFB;
+  }
+
+  std::uint64_t saidOfRegister(const CanFrame& frame) {
     if (littleEndian(frame, 0, 2) != static_cast<std::uint32_t>(id())) return 0;
     if (frame.length != 8 || frame.fd != own_.can_fd) refuse(frame, "a frame of a register of another form");
     if (frame.data[2] == kRead) return kAllBytes;
     if (frame.data[2] != kWrite) refuse(frame, "settings are stored");
-    if (frame.data[3] != kTimeoutRegister && frame.data[3] != kControlRegister)
-      refuse(frame, "a setting that rc10d has no business with");
+    const std::uint32_t value = littleEndian(frame, 4, 4);
+    switch (frame.data[3]) {
+      case kTimeoutRegister:
+        if (value != watchdog_steps_) refuse(frame, "another watchdog than its own");
+        watchdog_told_ = true;
+        break;
+      case kControlRegister:
+        if (value != mode_) refuse(frame, "another mode than its own");
+        mode_told_ = true;
+        break;
+      default: refuse(frame, "a setting that rc10d has no business with");
+    }
     return kAllBytes;
   }
 
   void saidSpecial(const CanFrame& frame) {
     switch (frame.data[7]) {
       case 0xFC:
+        if (!watchdog_told_ || !mode_told_) refuse(frame, "enabled without its watchdog and its mode");
         if (told_.law == Told::Law::kOff) told_ = {.law = Told::Law::kEffort, .effort_step = torqueStep()};
         return;
       case 0xFB:
@@ -156,6 +181,9 @@ class DamiaoWire final : public Wire {
 
   DamiaoSettings own_;
   unsigned mode_;
+  std::uint32_t watchdog_steps_;
+  bool watchdog_told_ = false;
+  bool mode_told_ = false;
   WrappedReading reading_;
   CanId command_id_;
   double position_rad_ = 0.0;

@@ -37,6 +37,10 @@ class DjiWire final : public Wire {
     return 3ULL << (2 * slot_);
   }
 
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    return frame.id == command_id_ && plainFrame(frame, 8) && saysSomething(frame);
+  }
+
   bool heard(const CanFrame& frame) override {
     if (!plainFrame(frame, 8) || frame.id != feedback_id_) return false;
     if (bigEndian(frame, 0, 2) >= 8192) return false;

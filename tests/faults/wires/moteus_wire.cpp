@@ -21,6 +21,12 @@ constexpr std::uint32_t kMostTorque = 0x025;
 constexpr std::uint32_t kTimeout = 0x027;
 constexpr std::uint32_t kMostVelocity = 0x028;
 constexpr std::uint32_t kIntegralLimit = 0x02B;
+constexpr double kRoundRev = 65536.0;
+// The point that moves with a velocity stays so near (docs/motors/moteus.md), and goes on for some
+// turns of its commands.
+constexpr double kSlipRev = 0.5;
+constexpr double kSlipTurns = 2.0;
+constexpr double kSlipSeconds = 0.004;
 constexpr double kStopped = 0.0;
 constexpr double kPosition = 10.0;
 constexpr double kBrake = 15.0;
@@ -51,6 +57,7 @@ constexpr double kBrake = 15.0;
 class MoteusWire final : public Wire {
  public:
   explicit MoteusWire(const MotorConfig& config) : Wire(config), own_(moteusSettings(config.settings.own)) {
+    slip_s_ = kSlipSeconds + kSlipTurns * config.settings.command_divider / config.settings.tick_hz;
     const auto drive = static_cast<std::uint32_t>(id());
     command_id_ = {own_.can_prefix << 16U | 0x8000U | drive, true};
     const std::uint32_t reply = own_.can_prefix << 16U | drive << 8U;
@@ -81,6 +88,14 @@ class MoteusWire final : public Wire {
     const auto written = numbersOf(frame, 0x00);
     return obeys(frame) && written && !written->empty();
   }
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    if (frame.id != command_id_ || frame.type != FrameType::kData || frame.length == 0) return false;
+    const auto written = numbersOf(frame, 0x00);
+    if (!written || frame.data[0] > 0x0F) return false;
+    const auto mode = written->find(kMode);
+    return mode != written->end() && mode->second != kStopped;
+  }
+
   bool heard(const CanFrame& frame) override {
     if (frame.id != reply_id_ || frame.type != FrameType::kData) return false;
     const auto told = numbersOf(frame, 0x20);
@@ -134,6 +149,11 @@ class MoteusWire final : public Wire {
       told_.sum = kUnsaid;  // the gain is in the drive
     } else if (most_rev_s < 0.0) {
       told_.law = Told::Law::kVelocity;  // to a point that moves with it
+      told_.ahead_deg =
+          std::remainder(number(kPlace, place_rev_) - place_rev_, kRoundRev) * 360.0 / perOutput();
+      told_.most_ahead_deg =
+          (kSlipRev + std::fabs(number(kVelocity, 0.0)) * slip_s_) * 360.0 / std::fabs(perOutput());
+      told_.ahead_step_deg = (1e-6 + std::fabs(place_rev_) * 1e-6) * 360.0 / std::fabs(perOutput());
     } else {
       told_.law = Told::Law::kAngle;
       told_.ahead_deg = (number(kPlace, place_rev_) - place_rev_) * 360.0 / perOutput();
@@ -193,6 +213,7 @@ class MoteusWire final : public Wire {
   MoteusSettings own_;
   CanId command_id_;
   CanId reply_id_;
+  double slip_s_ = 0.0;
   double place_rev_ = 0.0;
   Told told_;
 };

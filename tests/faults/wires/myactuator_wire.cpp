@@ -35,6 +35,13 @@ class MyactuatorWire final : public Wire {
     return kAllBytes;
   }
 
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    if (!plainFrame(frame, 8)) return false;
+    const bool moves = frame.data[0] == 0xA1 || frame.data[0] == 0xA2 || frame.data[0] == 0xA4;
+    return frame.id == CanId{0x400U + number_, false} ||
+           (frame.id == CanId{0x140U + number_, false} && moves);
+  }
+
   bool heard(const CanFrame& frame) override {
     if (!plainFrame(frame, 8)) return false;
     if (frame.id == CanId{0x500U + number_, false} && frame.data[0] == number_) {

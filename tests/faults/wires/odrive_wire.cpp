@@ -43,6 +43,13 @@ class OdriveWire final : public Wire {
     return kAllBytes;
   }
 
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    if (frame.id.extended || frame.id.value >> 5U != static_cast<std::uint32_t>(id())) return false;
+    const std::uint32_t message = frame.id.value & 0x1FU;
+    if (frame.type != FrameType::kData) return false;
+    return message == 0x0C || message == 0x0D || (message == 0x0E && saysSomething(frame));
+  }
+
   bool heard(const CanFrame& frame) override {
     if (frame.id.extended || frame.id.value >> 5U != static_cast<std::uint32_t>(id()) ||
         !plainFrame(frame, 8))

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kLateReports = 4;
 constexpr double kRoundRad = 8.0 * std::numbers::pi;
+constexpr std::uint32_t kWatchdogPerMs = 20;  // 20000: a second
 constexpr std::uint16_t kRunMode = 0x7005;
 constexpr std::uint16_t kCurrentRef = 0x7006;
 constexpr std::uint16_t kVelocityRef = 0x700A;
@@ -27,7 +28,8 @@ class RobstrideWire final : public Wire {
   explicit RobstrideWire(const MotorConfig& config)
       : Wire(config),
         model_(findRobstrideModel(config.settings.model)),
-        host_(static_cast<std::uint32_t>(config.settings.own.integer("host_id"))) {
+        host_(static_cast<std::uint32_t>(config.settings.own.integer("host_id"))),
+        watchdog_(static_cast<std::uint32_t>(config.settings.own.integer("watchdog_ms")) * kWatchdogPerMs) {
     const double range_rad = config.settings.own.number("position_range_rad");
     range_rad_ = range_rad > 0.0 ? range_rad : model_->position_range_rad;
     speed_field_end_rad_s_ = model_->velocity_range_rad_s;
@@ -40,16 +42,19 @@ class RobstrideWire final : public Wire {
     if (!plainFrame(frame, 8)) refuse(frame, "a command frame of another form");
     switch (type) {
       case 1: saidOperate(frame); break;
-      case 3:
-        on_ = true;
-        reports_ = 0;
-        break;
+      case 3: saidEnable(frame); break;
       case 4: forget(); break;
       case 17: break;  // a question
       case 18: saidWrite(frame); break;
       default: refuse(frame, "its zero, its id, its flash, or nothing known");
     }
     return kAllBytes;
+  }
+
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    const std::uint32_t type = frame.id.value >> 24U & 0x1FU;
+    const bool to_it = frame.id.extended && (frame.id.value & 0xFFU) == static_cast<std::uint32_t>(id());
+    return to_it && plainFrame(frame, 8) && (type == 1 || type == 18);
   }
 
   bool heard(const CanFrame& frame) override {
@@ -101,6 +106,13 @@ class RobstrideWire final : public Wire {
     operated_.reset();
   }
 
+  void saidEnable(const CanFrame& frame) {
+    if (watchdog_ > 0 && !watchdog_told_) refuse(frame, "enabled without its watchdog");
+    if (run_mode_ == 0 && !torque_bounded_) refuse(frame, "enabled without its torque limit");
+    on_ = true;
+    reports_ = 0;
+  }
+
   void saidOperate(const CanFrame& frame) {
     const double torque = model_->torque_range_nm;
     operated_ =
@@ -126,9 +138,18 @@ class RobstrideWire final : public Wire {
         seen_rad_ = position_rad_;
         break;
       case kVelocityLimit: velocity_limit_rad_s_ = value; break;
-      case kTorqueLimit: break;
+      case kTorqueLimit: {
+        const auto own = static_cast<double>(settings().effort_limit);
+        const double most = own > 0.0 ? own : static_cast<double>(traits().effort_full_scale);
+        if (!(std::fabs(effortOfNm(value)) <= most * (1.0 + 1e-4)))
+          refuse(frame, "a torque limit beyond its limit");
+        torque_bounded_ = true;
+        break;
+      }
       default:
         if (index != model_->watchdog_index) refuse(frame, "a parameter that rc10d has no business with");
+        if (littleEndian(frame, 4, 4) != watchdog_) refuse(frame, "another watchdog than its own");
+        watchdog_told_ = true;
     }
   }
 
@@ -152,6 +173,9 @@ class RobstrideWire final : public Wire {
 
   const RobstrideModel* model_;
   std::uint32_t host_;
+  std::uint32_t watchdog_;
+  bool watchdog_told_ = false;
+  bool torque_bounded_ = false;
   double range_rad_ = 0.0;
   bool on_ = false;
   int reports_ = 0;  // since it was enabled

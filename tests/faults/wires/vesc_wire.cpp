@@ -8,11 +8,14 @@
 namespace rc10::test {
 namespace {
 
+constexpr double kPlaceStepDeg = 0.02;  // of STATUS_4
+
 class VescWire final : public Wire {
  public:
   explicit VescWire(const MotorConfig& config) : Wire(config), options_(vescSettings(config.settings.own)) {
     const double gear = config.settings.gear_ratio > 0.0 ? config.settings.gear_ratio : 1.0;
     rpm_per_erpm_ = direction() / (options_.pole_pairs * gear);
+    if (options_.angle == VescAngle::kEncoder) deg_per_deg_ = direction() * options_.position_divider / gear;
   }
 
   std::uint64_t said(const CanFrame& frame) override {
@@ -37,13 +40,26 @@ class VescWire final : public Wire {
         told_.law = Told::Law::kVelocity;
         told_.velocity_rpm = raw * rpm_per_erpm_;
         break;
-      case 4: told_.law = Told::Law::kAngle; break;  // the shortest way: 30 degrees at most, see the motor
+      case 4:
+        told_.law = Told::Law::kAngle;
+        told_.led = true;
+        told_.ahead_deg = std::remainder(raw * 1e-6 - place_deg_, 360.0) * deg_per_deg_;
+        told_.ahead_step_deg = kPlaceStepDeg * std::fabs(deg_per_deg_);
+        if (raw < 0.0 || raw > 360e6) refuse(frame, "a place beyond the circle");
+        break;
       case 10: say(Told::Law::kEffort, direction() * share_a); break;
       case 11:
       case 13: resist(share_a); break;
       default: refuse(frame, "a packet that rc10d has no business with");
     }
     return kAllBytes;
+  }
+
+  [[nodiscard]] bool steeredBy(const CanFrame& frame) const override {
+    if (!frame.id.extended || (frame.id.value & 0xFFU) != static_cast<std::uint32_t>(id())) return false;
+    const std::uint32_t packet = frame.id.value >> 8U;
+    const bool moves = packet <= 4 || (packet >= 10 && packet <= 13);
+    return moves && frame.type == FrameType::kData && (packet != 1 || saysSomething(frame));
   }
 
   bool heard(const CanFrame& frame) override {
@@ -54,6 +70,7 @@ class VescWire final : public Wire {
         measured_.velocity_rpm = int32Of(bigEndian(frame, 0, 4)) * rpm_per_erpm_;
         return options_.angle == VescAngle::kNone;
       case 16:
+        place_deg_ = int16Of(bigEndian(frame, 6, 2)) * kPlaceStepDeg;
         measured_.temperature_c = int16Of(bigEndian(frame, options_.motor_temperature ? 2 : 0, 2)) * 0.1;
         return options_.angle == VescAngle::kEncoder;
       case 27: return options_.angle == VescAngle::kTachometer;
@@ -75,6 +92,8 @@ class VescWire final : public Wire {
 
   VescSettings options_;
   double rpm_per_erpm_ = 1.0;
+  double deg_per_deg_ = 1.0;  // of the output shaft for each of its position
+  double place_deg_ = 0.0;
   Told told_;
 };
 
