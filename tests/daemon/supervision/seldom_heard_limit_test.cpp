@@ -13,7 +13,7 @@ namespace {
 struct Seldom {
   const char* name;
   const char* keys;
-  double gap_periods = 1.0;  ///< Of lost feedback that does not look like a restart.
+  double gap_periods = 1.0;  ///< Feedback lost, less than looks like a restart.
 };
 
 void PrintTo(const Seldom& seldom, std::ostream* out) { *out << seldom.name; }
