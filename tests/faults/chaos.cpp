@@ -174,6 +174,7 @@ void Chaos::step() {
   const auto action = choose(choices_);
   ++done_[static_cast<std::size_t>(action)];
   act(action);
+  if (lie_ && lie_->kind == Lie::Kind::kForeign && choices_.oneIn(4)) secondController();
   constexpr std::array<std::uint64_t, 8> kPauses{1, 1, 2, 3, 10, 30, 60, 400};
   ticks(kPauses[choices_.next(8)]);
 }

@@ -54,6 +54,12 @@ constexpr double kAngleSlackDeg = 1.0;
   return to_a_place && (by_itself || slows(told, measured_rpm));
 }
 
+// A VESC that is too fast for the shortest way to a place is slowed down first.
+[[nodiscard]] bool brakesToHold(const Told& told, double measured_rpm) {
+  return told.law == Told::Law::kVelocity && told.velocity_rpm * measured_rpm > 0.0 &&
+         std::fabs(told.velocity_rpm) <= 0.5 * std::fabs(measured_rpm) + told.velocity_step_rpm;
+}
+
 }  // namespace
 
 bool ofHost(const MotorConfig& config, FallbackAction action) {
@@ -351,7 +357,8 @@ bool Oracle::fits(const Motor& motor, FallbackAction action) const {
     case FallbackAction::kBrake:
       if (resists(FrameKind::kBrake, motor.config->traits().frames)) return told.resistsAtMost();
       return motor.host_brakes || staysPut(told, measured_rpm);
-    case FallbackAction::kHold: return motor.host_holds || staysPut(told, measured_rpm);
+    case FallbackAction::kHold:
+      return motor.host_holds || staysPut(told, measured_rpm) || brakesToHold(told, measured_rpm);
     case FallbackAction::kRamp: return ramps(motor);
   }
   return false;

@@ -18,7 +18,7 @@ namespace oracle_test {
 
 using Kind = Chaos::Lie::Kind;
 
-constexpr std::uint64_t kMostTicks = 400'000;
+constexpr std::uint64_t kMostTicks = 1'200'000;
 
 struct Case {
   std::size_t robot = 0;

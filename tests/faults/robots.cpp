@@ -100,6 +100,9 @@ buses:
       - {name: steer, model: VESC, id: 11, pole_pairs: 7, motor_current_max_a: 20, current_limit_a: 10, gear_ratio: 10,
          velocity_limit_rpm: 200, relative_current: true, on_timeout: hold, on_disable: damp, on_estop: damp,
          kv_rpm_per_v: 190, feedback_hz: 200, angle_min_deg: -180, angle_max_deg: 180, zero: power_on, direction: -1}
+      - {name: mast, model: VESC, id: 12, pole_pairs: 7, angle: encoder, current_limit_a: 10, velocity_limit_rpm: 200,
+         kv_rpm_per_v: 190, feedback_hz: 200, on_timeout: hold, on_disable: damp, on_estop: hold, hold_max_s: 0.5,
+         angle_min_deg: -120, angle_max_deg: 120}
   - name: legs
     type: sim
     data_bitrate: 5000000
