@@ -14,12 +14,11 @@
 
 #include "app/planar_motion.hpp"
 #include "fake_robot.hpp"
+#include "module/chassis_values.hpp"
 #include "module/swerve_chassis.hpp"
 
 namespace rc10::test::chassis_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 enum Output : std::size_t { kX, kY, kHeading, kVx, kVy, kWz, kPower, kFactor };
 
@@ -47,29 +46,6 @@ class GimbalModule : public Module_Base {
       : Module_Base({.inputs = {}, .outputs = {"relative_yaw_deg", "turn_after_deg"}, .events = {}}) {}
   void update(const Tick&, ModuleRobot&) noexcept override {}
 };
-
-OwnValues common() {
-  OwnValues own;
-  own.set("max_speed_m_s", 2.0);
-  own.set("max_turn_deg_s", 360.0);
-  own.set("max_acceleration_m_s2", 4.0);
-  own.set("max_turn_acceleration_deg_s2", 720.0);
-  own.set("follow_gain_per_s", 5.0);
-  own.set("power_limit_w", 0.0);
-  own.set("loss_w_per_nm2", 0.0);
-  own.set("wheel_radius_m", 0.076);
-  own.set("track_m", 0.5);
-  own.set("wheelbase_m", 0.4);
-  own.set("centre_distance_m", 0.3);
-  own.set("middle_wheel", std::string{"rear"});
-  return own;
-}
-
-OwnValues section(std::initializer_list<const char*> names, std::size_t first = 0) {
-  OwnValues section;
-  for (const auto* name : names) section.set(name, static_cast<double>(first++));
-  return section;
-}
 
 /// A chassis on motors that do at once what they are told.
 class Chassis : public ::testing::Test {
@@ -572,56 +548,6 @@ TEST_F(Chassis, SwerveDoesNotDriveWhileOneWheelDoesNotKnowItsDirection) {
   robot_->motor(6).feedback.zeroed = true;
   run(1);
   EXPECT_TRUE(robot_->motor(0).target.has_value());
-}
-
-TEST(ChassisTypes, RefuseAMotorTwiceAndOnesThatTakeNoVelocities) {
-  ModuleSettings settings;
-  settings.own = common();
-  auto wheels = section({"front_left", "front_right", "rear_left", "rear_right"});
-  wheels.set("rear_left", 0.0);
-  settings.own.set("wheels", std::vector{wheels});
-  EXPECT_EQ(mecanumChassisType().build(settings, outlineOf(4)).error().message,
-            "wheels.rear_left: motor 'motor0' is given twice");
-  auto robot = outlineOf(4);
-  robot.motors[1].modes = ModeSet{ControlMode::kCurrent};
-  EXPECT_THAT(mecanumChassisType().build(settings, robot).error().message,
-              HasSubstr("wheels.front_right: motor 'motor1' takes no velocity targets"));
-}
-
-TEST(ChassisTypes, APowerLimitNeedsTheTorqueOfEachMotor) {
-  const auto corners = [](std::size_t first) {
-    return std::vector{section({"front_left", "front_right", "rear_left", "rear_right"}, first)};
-  };
-  ModuleSettings settings;
-  settings.own = common();
-  settings.own.set("wheels", corners(0));
-  settings.own.set("drive", corners(0));
-  settings.own.set("steer", corners(4));
-  auto robot = outlineOf(8);
-  robot.motors[2].unreported_torque_remedy = "write kv_rpm_per_v";
-  EXPECT_TRUE(mecanumChassisType().build(settings, robot)) << "it has no limit";
-  settings.own.set("power_limit_w", 80.0);
-  const std::string refusal =
-      "reports no torque, of which the power is computed: the limit would never act; write kv_rpm_per_v, or "
-      "remove it";
-  EXPECT_EQ(mecanumChassisType().build(settings, robot).error().message,
-            "power_limit_w: motor 'motor2' " + refusal);
-  EXPECT_EQ(swerveChassisType().build(settings, robot).error().message,
-            "power_limit_w: motor 'motor2' " + refusal);
-  std::swap(robot.motors[2].unreported_torque_remedy, robot.motors[7].unreported_torque_remedy);
-  EXPECT_TRUE(mecanumChassisType().build(settings, robot));
-  EXPECT_EQ(swerveChassisType().build(settings, robot).error().message,
-            "power_limit_w: motor 'motor7' " + refusal);
-}
-
-TEST(ChassisTypes, ALimitOfTheWheelsMustComeFromSomewhere) {
-  ModuleSettings settings;
-  settings.own = common();
-  settings.own.set("wheels", std::vector{section({"front_left", "front_right", "rear_left", "rear_right"})});
-  auto robot = outlineOf(4);
-  for (auto& motor : robot.motors) motor.velocity_limit_rpm = 0.0F;
-  EXPECT_THAT(mecanumChassisType().build(settings, robot).error().message,
-              HasSubstr("wheel_limit_rpm: is missing"));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using MotorSet = std::bitset<kMaxMotors>;
 inline constexpr std::size_t kSetpointsPerTick = 1024;
 /// Motors of requests that a tick carries out before it leaves the rest to the next: the members of a group
 /// are looked through for each.
-inline constexpr std::size_t kOrderedMotorsPerTick = 256;
+inline constexpr std::size_t kOrderedMotorsPerTick = 1024;
 
 /// Requests of all clients that are under way at the same time.
 inline constexpr std::size_t kMaxOpenRequests = 64;

@@ -34,7 +34,7 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   std::size_t ordered = 0;
   for (auto n = link_.orders.read_available(); n > 0 && ordered < kOrderedMotorsPerTick; --n) {
     link_.orders.consume_one([&](const Order& order) {
-      ordered += std::max<std::size_t>(order.motors.count(), 1);
+      ordered += std::clamp<std::size_t>(order.motors.count(), 1, axes_.size());
       carryOut(order, tick);
     });
   }

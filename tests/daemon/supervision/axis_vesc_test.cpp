@@ -53,7 +53,7 @@ class VescThatIsHeld : public ::testing::TestWithParam<const char*> {
 // Another drive may have been plugged in meanwhile, without a watchdog.
 TEST_P(VescThatIsHeld, AfterAGapIsRefusedAndHeldOnAndHasToRestFirst) {
   robot().simBus().silence(0, true);
-  robot().run(330);
+  robot().tick(330);  // a pause of the computer; another gap as long ends ACTIVE
   robot().simBus().silence(0, false);
   robot().run(50);
   ASSERT_EQ(motor_.seen().status, MotorStatus::kActive);
