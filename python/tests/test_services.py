@@ -158,7 +158,10 @@ def answers(link: VirtualLink) -> list[tuple[int, int, str]]:
     return heard
 
 
-TOO_LATE = "too late: the client does not wait for it any more"
+TOO_LATE = (
+    "too late: it may have waited here for longer than its client waits"
+    " (does the server receive often enough?)"
+)
 
 
 def late(number: int) -> tuple[int, int, str]:

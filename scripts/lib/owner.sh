@@ -6,6 +6,9 @@ must_be_ours() {
     local foreign
     foreign=$(find "$@" ! -user "$(id -u)" ! -writable -print -quit 2>/dev/null) || true
     [ -n "$foreign" ] || return 0
-    echo "${foreign#"${repo:?}/"} belongs to another user: sudo chown -R \"\$USER\" . (in the clone)" >&2
+    case $foreign in
+        "${repo:?}"/*) echo "${foreign#"$repo/"} belongs to another user: sudo chown -R \"\$USER\" . (in the clone)" ;;
+        *) echo "$foreign belongs to another user: sudo chown -R \"\$USER\" ${1@Q}" ;;
+    esac >&2
     return 1
 }

@@ -315,7 +315,7 @@ def main() -> int:
         LOGS.mkdir(parents=True, exist_ok=True)
         lock = (LOGS / "lock").open("w")
     except PermissionError as error:
-        remedy = "build/ belongs to another user: sudo rm -r build .venv"
+        remedy = 'it belongs to another user: sudo chown -R "$USER" . (in the clone)'
         print(f"test.sh: {error}: {remedy}", file=sys.stderr)
         return 2
     except OSError as error:

@@ -132,12 +132,13 @@ class Gimbal : public Module_Base {
     const double imu_pitch_deg = read(robot, kImuPitch);
     const bool by_imu_pitch = std::isfinite(imu_pitch_deg);
     const double motor_pitch_deg = wrapHalfTurn(static_cast<double>(pitch.angle_deg));
-    // Its last word was wrong by twice the way since, which would lead beyond pitch_max_deg.
-    if (opposed(kImuPitch)) sensed_pitch_.forget();
-    const double pitch_deg = sensed_pitch_.step(imu_pitch_deg, motor_pitch_deg);
     const bool ready = robot.obeys(yaw_motor_) && robot.obeys(pitch_motor_) && yaw.zeroed && pitch.zeroed;
-    // The direction is kept; the chassis may have turned by the time the sensor is back.
     const bool restarts = !ready || !was_ready_;
+    // A last word from before a stop, or of an opposed sensor, would lead beyond pitch_min_deg or
+    // pitch_max_deg.
+    if (restarts || opposed(kImuPitch)) sensed_pitch_.forget();
+    const double pitch_deg = sensed_pitch_.step(imu_pitch_deg, motor_pitch_deg);
+    // The direction is kept; the chassis may have turned by the time the sensor is back.
     if (restarts || stabilised != was_stabilised_) {
       if (!restarts && !opposed(kImuYaw)) robot.report(stabilised ? kBack : kLost);
     }

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <iterator>
 #include <mutex>
@@ -53,6 +55,9 @@ using RawHandler = std::function<void(const std::string& channel, std::span<cons
          "127.0.0.1 "
          "(and only if that is not enough: sudo ip link set lo multicast on)";
 }
+
+// Of the message that this thread handles: when this computer received it, by the clock of liblcm.
+thread_local std::int64_t t_received_us = 0;
 
 void notify(int event) noexcept { (void)::eventfd_write(event, 1); }
 
@@ -185,6 +190,7 @@ struct LcmLink::Impl {
     auto& handler = *static_cast<Subscription::Handler*>(self);
     const std::lock_guard lock(handler.mutex);
     if (!handler.alive) return;
+    t_received_us = message->recv_utime;
     handler.call(channel, {static_cast<const std::byte*>(message->data), message->data_size});
   }
 
@@ -248,6 +254,12 @@ bool LcmLink::moreWaits() const noexcept {
   if (impl_->lcm == nullptr) return false;
   pollfd entry{lcm_get_fileno(impl_->lcm), POLLIN, 0};
   return ::poll(&entry, 1, 0) > 0;
+}
+
+Duration LcmLink::waited() const noexcept {
+  const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  return std::max(Duration{}, Duration{now_us - std::chrono::microseconds{t_received_us}});
 }
 
 bool LcmLink::inHandler() const noexcept { return std::this_thread::get_id() == impl_->thread.get_id(); }

@@ -56,7 +56,7 @@ struct ServiceDesk::Impl {
       : link(the_link), name(std::move(the_name)), types(the_types), handler(std::move(the_handler)) {}
 
   void receive(std::span<const std::byte> bytes) {
-    Call call{{}, timeNow()};
+    Call call{{}, timeNow() - link.waited()};
     if (!LcmLink::decode(bytes, call.request)) return;
     std::optional<service_response_t> answer;
     {

@@ -486,6 +486,20 @@ TEST_P(PatientFamily, NeitherALostFrameNorAPauseOfTheComputerEndsActive) {
 INSTANTIATE_TEST_SUITE_P(All, PatientFamily, ::testing::ValuesIn(kPatientSubjects),
                          [](const auto& subject) { return std::string{subject.param.name}; });
 
+class PatientHeldFamily : public HeldFamily {};
+
+TEST_P(PatientHeldFamily, IsLetGoAfterASilenceInWhichItMayHaveBeenRestarted) {
+  ASSERT_TRUE(isHeld());
+  robot.simBus().silence(kMotor, true);
+  robot.run(600);
+  robot.simBus().silence(kMotor, false);
+  robot.run(250);
+  EXPECT_EQ(robot.motor(kMotor).acting, Acting::kNothing);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PatientHeldFamily, ::testing::ValuesIn(kPatientSubjects),
+                         [](const auto& subject) { return std::string{subject.param.name}; });
+
 std::vector<Subject> toldOfRestart() {
   std::vector<Subject> told;
   std::copy_if(std::begin(kSubjects), std::end(kSubjects), std::back_inserter(told),

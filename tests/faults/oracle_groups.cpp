@@ -160,7 +160,7 @@ void Oracle::followActions(std::size_t index, const MotorSnapshot& seen) {
   const bool stopped_while_enabling = (before == MotorStatus::kEnabling || motor.enable_asked) &&
                                       (stopped_with_group || motor.disables_asked > 0);
   if (stopped_while_enabling) {
-    const bool stood = motor.stood;  // what had ended before it was enabled does not begin anew
+    const bool stood = motor.stood;  // one that had ended before does not begin anew
     setActions(motor, motor.actions | only(fallback.on_estop) | only(fallback.on_disable));
     motor.ends_at_standstill = true;
     motor.stood = stood;

@@ -96,6 +96,17 @@ def test_a_signal_ends_with_what_stops_a_motor_of_its_module(
         assert HAVE_ENDED in program.output
 
 
+@pytest.mark.parametrize("copy", ["readable", "not readable"])
+def test_a_signal_does_not_wait_in_an_estop_for_somebody_to_clear_it(
+    lift: Daemon, copy: str
+) -> None:
+    lift.must("estop")
+    with copy_as(lift, copy), lift.drive("signal", "lift", "velocity_rpm=20", "--for", "60s") as it:
+        assert it.wait() == 1
+        assert "the robot is in ESTOP: `rc10ctl clear`" in it.output
+    lift.must("clear")
+
+
 def test_a_signal_without_the_file_needs_no_motor_of_another_module(lift: Daemon) -> None:
     with copy_as(lift, "not readable"), signalling(lift) as program:
         assert motor_of(lift.state(), "yaw")["status"] == "READY"

@@ -486,6 +486,12 @@ TEST_F(LateGimbal, APitchThatIsAimedStaysWithoutItsSensorAndWhenThatIsBack) {
       ASSERT_NEAR(pitch(), -5.0, 0.5) << heard;
     }
   }
+  imu_heard_ = false;
+  robot_.motor(1).status = MotorStatus::kReady;
+  run(10);
+  robot_.motor(1).status = MotorStatus::kActive;
+  run(1000);
+  EXPECT_NEAR(pitch(), 5.0, 0.5) << "the last word of before a stop says nothing";
 }
 
 TEST_F(LateGimbal, AYawRateOfTheWrongSignIsNotTakenOff) {

@@ -1,3 +1,4 @@
+#include <atomic>
 #include <future>
 #include <stdexcept>
 #include <thread>
@@ -259,6 +260,34 @@ TEST_F(ServiceTest, RefusesWhatWouldWaitTooLong) {
   EXPECT_THAT(refused.get_future().get(),
               testing::ElementsAre("busy: 16 calls wait already",
                                    "too late: the client does not wait for it any more"));
+}
+
+// So it does after a stop of the program, and in the socket.
+TEST_F(ServiceTest, RefusesWhatHasWaitedForACallbackOfAnother) {
+  std::promise<void> begun;
+  std::promise<void> let_it_end;
+  const Subscriber<counter_t> busy(link_, "busy", [&](const counter_t&) {
+    begun.set_value();
+    let_it_end.get_future().wait();
+  });
+  std::atomic<int> calls{0};
+  const Server server(link_, "double", [&](const counter_t& request) {
+    ++calls;
+    return doubled(request);
+  });
+  std::promise<std::string> refused;
+  const Subscriber<service_response_t> answers(link_, "double.response",
+                                               [&, first = true](const service_response_t& response) mutable {
+                                                 if (std::exchange(first, false))
+                                                   refused.set_value(response.message);
+                                               });
+  ASSERT_TRUE(link_.publish("busy", counter(0)));
+  begun.get_future().wait();
+  Client client(link_, "double");
+  EXPECT_EQ(client.call(counter(1), {.timeout = 100ms}).error().kind, Kind::kNoAnswer);
+  let_it_end.set_value();
+  EXPECT_THAT(refused.get_future().get(), HasSubstr("too late"));
+  EXPECT_EQ(calls, 0);
 }
 
 TEST_F(ServiceTest, CallingInACallbackIsAnErrorAndNoDeadlock) {

@@ -127,8 +127,9 @@ def test_an_environment_that_a_run_with_sudo_has_made_is_named_with_the_remedy(
     environment.run(*stranger, REPO / "scripts" / "venv.sh", "client")  # as it is, it serves
     with pytest.raises(subprocess.CalledProcessError) as refused:
         environment.run(*stranger, REPO / "scripts" / "venv.sh")
-    remedy = 'sudo chown -R "$USER" . (in the clone)'
-    assert f"{tmp_path}/venv/bin belongs to another user: {remedy}\n" in refused.value.stderr
+    venv = tmp_path / "venv"
+    remedy = f"sudo chown -R \"$USER\" '{venv}'"
+    assert f"{venv}/bin belongs to another user: {remedy}\n" in refused.value.stderr
 
 
 def test_one_that_was_interrupted_is_made_anew(environment: Environment, tmp_path: Path) -> None:

@@ -27,6 +27,8 @@ _MAX_PER_PUMP = 4096
 
 # A signal that comes just before a sleep, or to LCM's thread, does not end it; Ctrl-C has to.
 _LONGEST_SLEEP_S = 0.2
+# LCM's thread has handed over by then what came while the program was stopped.
+_HANDOVER_S = 0.01
 _STATE = ".v1.state"
 
 
@@ -80,7 +82,7 @@ class LcmLink:
         except (RuntimeError, OSError) as error:
             raise LinkError(_start_failure(url)) from error
         self._own = OwnDatagrams(_effective(url), descriptors() - before)
-        self._empty_s = -math.inf
+        self._empty_s = self._looked_s = -math.inf
 
     @property
     def lcm(self) -> lcm.LCM:
@@ -147,7 +149,10 @@ class LcmLink:
     def _message_waits(self) -> bool:
         """Whether a message waits already."""
         now_s = self.now()  # before looking: what comes meanwhile is younger
-        ready = self._readable(0.0)
+        # After a stop of the program (Ctrl-Z) LCM's thread needs a moment to hand over what came.
+        stood = now_s - self._looked_s > 2 * _LONGEST_SLEEP_S
+        ready = self._readable(_HANDOVER_S if stood else 0.0)
+        self._looked_s = self.now()
         if not ready:
             self._empty_s = now_s
         return ready

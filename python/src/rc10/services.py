@@ -81,7 +81,10 @@ class ServiceServer(Generic[RequestT, ResponseT]):
             return answer
         if self._is_late(request):
             answer.status = service_response_t.STATUS_REFUSED
-            answer.message = "too late: the client does not wait for it any more"
+            answer.message = (
+                "too late: it may have waited here for longer than its client waits"
+                " (does the server receive often enough?)"
+            )
             return answer
         try:
             result: Any = self._handler(self._request_type.decode(request.payload))

@@ -21,7 +21,7 @@ std::string inGroup(const GroupConfig& group) {
   return std::string{"group "} + group.name + (group.implied ? " of the module of that name" : "");
 }
 
-/// What somebody lifted with two motors racks where only one of them stops.
+/// A load that two motors lift racks where only one of them stops.
 void checkGroup(const RobotConfig& robot, const ModuleConfig& module, const std::vector<std::size_t>& motors,
                 Problems& problems) {
   const bool together = module.type->coupling() == ModuleType::Coupling::kTogether;

@@ -14,7 +14,7 @@ namespace rc10 {
   return std::min(MonotonicTime{Duration{received_ns}}, now);
 }
 
-/// How long a request has waited that was received at `received_ns` (CLOCK_MONOTONIC; 0: not known).
+/// Time that a request has waited since `received_ns` (CLOCK_MONOTONIC; 0: not known).
 [[nodiscard]] inline Duration waitedSince(std::int64_t received_ns, MonotonicTime now) noexcept {
   if (received_ns == 0) return {};
   // No stamp is from before the start of this clock; the difference would not fit.

@@ -23,9 +23,6 @@ using MotorSet = std::bitset<kMaxMotors>;
 
 /// Bound of the work in a tick: with these applied, the commands that follow wait for the next one.
 inline constexpr std::size_t kSetpointsPerTick = 1024;
-/// Motors of requests that a tick carries out before it leaves the rest to the next: the members of a group
-/// are looked through for each.
-inline constexpr std::size_t kOrderedMotorsPerTick = 1024;
 
 /// Requests of all clients that are under way at the same time.
 inline constexpr std::size_t kMaxOpenRequests = 64;

@@ -84,7 +84,7 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   const Duration age = tick.now - feedback.received;
   // Samples that are old when they come are not heard: they could be old for ever.
   const bool heard = came && age <= entry_.oldest_heard;
-  restarted_ = heard && unheard_ >= entry_.restart_unheard && isOn(status_);
+  restarted_ = heard && unheard_ >= entry_.restart_unheard && (isOn(status_) || fallback_.acts());
   if (!heard) {
     goUnheard(came, since);
     return fresh(tick);

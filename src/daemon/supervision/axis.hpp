@@ -33,6 +33,10 @@ class Axis {
   /// Ceiling of the reduced mode; infinite outside it.
   [[nodiscard]] double speedCeilingRpm() const noexcept { return reduced_.ceilingRpm(); }
   [[nodiscard]] bool fallbackActs() const noexcept { return fallback_.acts(); }
+  /// A fallback acts, and its drive can be enabled from rest alone.
+  [[nodiscard]] bool mustRestFirst() const noexcept {
+    return fallback_.acts() && motor_.sequenceProgress() == SequenceProgress::kFailed;
+  }
   [[nodiscard]] FallbackAction timeoutAction() const noexcept { return entry_.fallback.on_timeout; }
   /// It must not be enabled: an angle could lead it a turn astray. One that is homed finds its angle itself.
   [[nodiscard]] bool turnUnclear() const noexcept { return motor_.feedback().turn_unclear && !entry_.homed; }

@@ -31,12 +31,8 @@ void Supervisor::receiveOrders(const Tick& tick) noexcept {
   if (link_.estop_datagram.exchange(false, std::memory_order_acquire))
     estop({StopCause::kRequest, link_.estop_datagram_client.read()}, tick);
   // Only what is there now: a client that floods the ring must not lengthen the tick without bound.
-  std::size_t ordered = 0;
-  for (auto n = link_.orders.read_available(); n > 0 && ordered < kOrderedMotorsPerTick; --n) {
-    link_.orders.consume_one([&](const Order& order) {
-      ordered += std::clamp<std::size_t>(order.motors.count(), 1, axes_.size());
-      carryOut(order, tick);
-    });
+  for (auto n = link_.orders.read_available(); n > 0; --n) {
+    link_.orders.consume_one([&](const Order& order) { carryOut(order, tick); });
   }
   for (auto n = link_.refusals.read_available(); n > 0; --n) {
     link_.refusals.consume_one([&](const Event& refusal) {
@@ -315,7 +311,9 @@ Refusal Supervisor::ownRefusal(std::size_t motor) const noexcept {
   switch (axes_[motor].status()) {
     case MotorStatus::kOffline: return Refusal::kOffline;
     case MotorStatus::kFault: return Refusal::kFaulted;
-    case MotorStatus::kReady: return axes_[motor].turnUnclear() ? Refusal::kTurnUnclear : Refusal::kNone;
+    case MotorStatus::kReady:
+      if (axes_[motor].turnUnclear()) return Refusal::kTurnUnclear;
+      return axes_[motor].mustRestFirst() ? Refusal::kRestFirst : Refusal::kNone;
     case MotorStatus::kEnabling:
     case MotorStatus::kActive: return Refusal::kNone;
   }

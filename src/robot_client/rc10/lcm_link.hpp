@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/result.hpp"
+#include "app/time.hpp"
 
 namespace rc10 {
 inline namespace robot_client {
@@ -64,6 +65,9 @@ class LcmLink {
 
   /// For a handler: whether another message waits behind the one that it was called with.
   [[nodiscard]] bool moreWaits() const noexcept;
+  /// For a handler: how long its message has waited since this computer received it, by the wall clock: in
+  /// the socket, for another handler, or for the whole program, as after Ctrl-Z.
+  [[nodiscard]] Duration waited() const noexcept;
   /// Whether the caller is a handler. It must not wait for messages, since none would come.
   [[nodiscard]] bool inHandler() const noexcept;
 

@@ -254,8 +254,10 @@ class Signalling {
            "': stop that program, or take over with a higher --priority";
   }
 
+  // Where the module's motors are not known, the robot's state tells alone.
   std::string atRest() const {
-    return motors_ ? whyAtRest(module_, *motors_, rc10d_.welcome(), feed_.state()) : std::string{};
+    if (!motors_ && feed_.state()->robot_state == RobotStatus::kRun) return {};
+    return whyAtRest(module_, watched_, rc10d_.welcome(), feed_.state());
   }
 
   std::vector<std::string> namesOf(const std::vector<std::size_t>& motors) const {

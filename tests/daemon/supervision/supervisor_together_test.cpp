@@ -126,5 +126,33 @@ TEST(MotorsOfOneThing, AreNotLetGoOfBeforeAllAreActive) {
   EXPECT_EQ(robot.motor(kRight).acting, Acting::kNothing);
 }
 
+// Refused by its drive after it was ENABLING, one would stop the other, which would let go.
+TEST(MotorsOfOneThing, AreHeldOnWhereOneOfThemMustRestBeforeItIsEnabled) {
+  const auto motor = [](const char* name) {
+    return std::string{"    type: sim\n    motors: [{name: "} + name +
+           ", model: VESC, id: 10, pole_pairs: 7, velocity_limit_rpm: 3000, feedback_hz: 500, "
+           "feedback_timeout_ms: 400, on_disable: hold}]\n";
+  };
+  const auto outcome = parseRobotConfig("robot: lift\nrealtime: preferred\nbuses:\n  - name: a\n" +
+                                            motor("left") + "  - name: b\n" + motor("right") +
+                                            "groups: [{name: lift, motors: [left, right], together: true}]\n",
+                                        "lift.yaml");
+  ASSERT_TRUE(outcome.config) << outcome.errorText();
+  VirtualRobot robot{*outcome.config};
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[kLeft], Refusal::kNone);
+  robot.simBus(0).silence(0, true);
+  robot.tick(330);  // a pause of the computer; another drive may have been plugged in
+  robot.simBus(0).silence(0, false);
+  robot.run(50);
+  robot.order(Operation::kDisable);
+  const auto refused = robot.order(Operation::kEnable);
+  EXPECT_EQ(refused.motors[kLeft], Refusal::kRestFirst);
+  EXPECT_EQ(refused.motors[kRight], Refusal::kGroup);
+  robot.run(50);
+  EXPECT_EQ(robot.motor(kLeft).acting, Acting::kHold);
+  EXPECT_EQ(robot.motor(kRight).acting, Acting::kHold);
+}
+
 }  // namespace
 }  // namespace rc10::test::supervisor_together_test

@@ -290,31 +290,6 @@ TEST_F(SchedulerTest, ATickAppliesABoundedNumberOfSetpoints) {
   EXPECT_EQ(ring.read_available(), 0U) << "nothing is lost";
 }
 
-TEST(SchedulerOfManyMotors, CarriesOutRequestsForABoundedNumberOfThemInATick) {
-  auto config = twoWheelsAndYaw();
-  const auto bus = config.buses[0];
-  config.buses.clear();
-  for (int b = 0; b < 4; ++b) {
-    config.buses.push_back(bus);
-    config.buses.back().name = "bus" + std::to_string(b);
-    config.buses.back().motors.clear();
-    for (int id = 1; id <= 8; ++id)
-      config.buses.back().motors.push_back(
-          makeMotor("m" + std::to_string(b) + "_" + std::to_string(id), kM3508, id));
-  }
-  VirtualRobot robot{config};
-  Order order;
-  order.operation = Operation::kDisable;
-  order.motors.set();
-  auto& ring = robot.exchange().orders;
-  constexpr std::size_t kAtOnce = kOrderedMotorsPerTick / 32;
-  for (std::size_t i = 0; i < kAtOnce + 2; ++i) ASSERT_TRUE(ring.push(order));
-  robot.tick();
-  EXPECT_EQ(ring.read_available(), 2U);
-  robot.tick();
-  EXPECT_EQ(ring.read_available(), 0U) << "nothing is lost";
-}
-
 TEST_F(SchedulerTest, ASilentMotorGoesOfflineAndMustBeEnabledAgain) {
   enableAll();
   robot.hold(kLeft, kVelocity120, 100);
