@@ -56,7 +56,7 @@ using RawHandler = std::function<void(const std::string& channel, std::span<cons
          "(and only if that is not enough: sudo ip link set lo multicast on)";
 }
 
-// Of the message that this thread handles: when this computer received it, by the clock of liblcm.
+// Time at which this computer received the message that this thread handles, by the clock of liblcm.
 thread_local std::int64_t t_received_us = 0;
 
 void notify(int event) noexcept { (void)::eventfd_write(event, 1); }
