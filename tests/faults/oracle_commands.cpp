@@ -283,8 +283,8 @@ void Oracle::judgeReduced(std::size_t index, const MotorSnapshot& seen) {
   const auto& frames = motor.config->traits().frames;
   const bool fast = std::fabs(seen.feedback.velocity_rpm) > reduced.velocity_rpm + reduced.tolerance_rpm;
   // An action that only resists is not taken away, and takes the place of a fallback that is dragged along.
-  const bool resisted =
-      seen.acting == Acting::kDamp || (seen.acting == Acting::kBrake && resists(FrameKind::kBrake, frames));
+  const bool brakes = seen.acting == Acting::kBrake || seen.target.mode == ControlMode::kBrake;
+  const bool resisted = seen.acting == Acting::kDamp || (brakes && resists(FrameKind::kBrake, frames));
   const bool led = seen.target.mode == ControlMode::kCoast && motor.actions != only(FallbackAction::kCoast);
   if (reduced.velocity_rpm > 0.0F && mode_open_ && fast && led && resisted)
     motor.actions |= only(seen.acting == Acting::kDamp ? FallbackAction::kDamp : FallbackAction::kBrake);
