@@ -25,7 +25,7 @@ class CommandPacker {
   /// Writes this tick's frames to `out` (room for kMaxFramesPerPacker) and returns how many.
   [[nodiscard]] virtual std::size_t packCommand(const Tick& tick, std::span<CanFrame> out) noexcept = 0;
 
-  /// A frame of its was not sent: refused by the kernel, without room in the tick, or held back.
+  /// One of its frames was not sent: refused by the kernel, without room in the tick, or held back.
   virtual void onUnsent() noexcept {}
 
   /// The frames that leave every drive behind this packer without torque, whatever the state.

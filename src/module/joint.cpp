@@ -349,7 +349,7 @@ class Joint : public Module_Base {
   void beginHoming(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot) noexcept {
     const auto now = measured(feedback, tick, robot);
     if (!now.switch_heard || feedback.zero_refused) {
-      // For nothing it would give up its angle, with the load that it holds there, or its soft limits.
+      // A homing in vain would give up the angle, with the load that is held there, and the soft limits.
       robot.report(now.switch_heard ? kNoReach : kNoSwitch);
       if (!feedback.zeroed) state_ = State::kHomingFailed;
       return;
@@ -517,8 +517,8 @@ class Joint : public Module_Base {
   MonotonicTime arrived_{};              ///< When the reference came to rest at the target, or the
   double nearest_deg_ = 0.0;             ///< motor nearer to it than so.
   bool waited_ = false;                  ///< The reference waits, or has not gone on far since.
-  double waited_s_ = 0.0;                ///< Time of that in all, while the motor came no nearer
-  double closest_deg_ = 0.0;             ///< than this.
+  double waited_s_ = 0.0;     ///< Time of waiting while the motor came no nearer than closest_deg_.
+  double closest_deg_ = 0.0;  ///< Least distance from the target when it last advanced.
 };
 
 class JointType : public ModuleType {

@@ -32,7 +32,7 @@ class JointHoming {
   struct Measured {
     double total_angle_deg = 0.0;
     double velocity_rpm = 0.0;
-    double current_a = 0.0;  ///< NaN: not told, by which nothing is pressed.
+    double current_a = 0.0;  ///< NaN: not told, so not pressed.
     /// Speed that the reduced mode leaves the motor; infinite: all.
     double speed_ceiling_rpm = std::numeric_limits<double>::infinity();
     bool at_switch = false;

@@ -7,10 +7,10 @@
 namespace rc10 {
 namespace {
 
-// Reports of the current, of which one is then of the standstill.
+// Reports of the current in a standstill, so that one is surely of it.
 constexpr int kReports = 2;
 
-// A standstill is the stop by its current: by one of before it, or by none, a stiff place would be one.
+// The current tells a stop from a stiff place, if it was measured during the standstill.
 Result<void> checkStop(const OwnValues& own, const RobotOutline::Motor& motor) {
   if (!motor.unreported_current_remedy.empty())
     return fail("homing: motor '" + motor.name +

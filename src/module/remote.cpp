@@ -256,7 +256,7 @@ class Remote : public Module_Base {
     const auto up = switchUp(*arm_channel_, received);
     if (!up) return;
     if (!*up) {
-      // Also of what others have enabled; down after a gap, it went down in that.
+      // Motors that others enabled, too. A switch that is down after a gap went down within it.
       if (std::exchange(seen_up_, false)) disableWhatIsOn(robot);
       armed_ = false;
       switch_known_ = true;

@@ -4,8 +4,8 @@
 
 namespace rc10 {
 
-/// Angle of an axis by a sensor on it; while that is silent, by the motor, from the sensor's last word on:
-/// what is to be looked at has the same angle before and after. A sensor that was never heard: the motor's.
+/// Angle of an axis: the sensor's, and while that is silent the motor's plus their last difference, so that
+/// it does not jump. Before the sensor is first heard: the motor's alone.
 class SensedAngle {
  public:
   /// `sensor_deg`: NaN while it is silent.
@@ -18,7 +18,7 @@ class SensedAngle {
   void forget() noexcept { base_deg_ = 0.0; }
 
  private:
-  double base_deg_ = 0.0;  ///< Angle of the chassis, by both.
+  double base_deg_ = 0.0;  ///< Their last difference: the angle of the chassis.
 };
 
 }  // namespace rc10

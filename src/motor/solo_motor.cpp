@@ -204,7 +204,7 @@ double SoloMotor::rpmWithinLimit(double output_rpm, double drive_limit_rpm) noex
 }
 
 // The first frame of another order does not wait for its turn: an e-stop, the end of a target, also in a
-// ramp. Nor does what stands for a frame that was not sent.
+// ramp. Nor does the frame after one that was not sent.
 bool SoloMotor::due(const Tick& tick) const noexcept {
   return out_of_turn_ || tick.index % divider_ == phase_ % divider_;
 }

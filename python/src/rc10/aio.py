@@ -52,7 +52,7 @@ _log = logging.getLogger("rc10")
 
 T = TypeVar("T")
 
-# So old at most is a message when the event loop hands it over, unless it stood still.
+# Greatest age of a message that the event loop hands over, unless it stood still.
 _PULSE_S = 0.05
 
 

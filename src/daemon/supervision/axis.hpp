@@ -178,7 +178,7 @@ class Axis {
     return fallback_.kind() == FrameKind::kCommand && motor_.target().mode == ControlMode::kCoast;
   }
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
-  /// A hold or a ramp begins, and what it begins from is not measured yet; else that becomes its own.
+  /// True while a hold has no measured place to begin from, or a ramp no measured speed. Sets that speed.
   [[nodiscard]] bool awaitsFeedback(FrameKind kind, const Tick& tick) noexcept;
   /// In the last tick, where it was told to: the place that is known is where it is.
   [[nodiscard]] bool stood() const noexcept;

@@ -37,8 +37,8 @@ class Lease {
   [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
     return !held(now) || isHolder(other) || other.priority > holder_.priority;
   }
-  /// An end begins nothing: of a sender that does not hold it, it could bring back what was displaced or
-  /// refused, for nobody.
+  /// An end is taken from the holder alone: another's could bring back a target that was displaced or
+  /// refused.
   [[nodiscard]] bool allows(const Holder& other, const Term& term, MonotonicTime now) const noexcept {
     return term.ends() ? held(now) && isHolder(other) : allows(other, now);
   }

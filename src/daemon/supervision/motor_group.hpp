@@ -57,9 +57,8 @@ struct MotorGroup {
   MotorSet rests_with_it;  ///< Disabled since another member was.
   MotorSet rearm;          ///< To be enabled again by itself; empty: none.
   // From tick to tick.
-  MotorSet gone;  ///< missing() of the last tick.
-  MotorSet
-      without_place;  ///< Members of lost_place until they have a reference again: no member follows a place.
+  MotorSet gone;            ///< missing() of the last tick.
+  MotorSet without_place;   ///< lost_place, until each has a reference again: no member follows a place.
   MonotonicTime stopped{};  ///< Last time at which it was.
   MonotonicTime moved{};    ///< Last time at which a member moved or was missing.
 };

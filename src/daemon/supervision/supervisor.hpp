@@ -103,6 +103,7 @@ class Supervisor {
   [[nodiscard]] bool follow(const Command::Setpoint& setpoint, const Lease::Holder& sender,
                             const Command& command, const Tick& tick) noexcept;
   void letGo(const Command& command, const Lease::Holder& sender, const Tick& tick) noexcept;
+  /// Motors of groups that act together of which this message would move only some.
   [[nodiscard]] MotorSet heldBackBy(const Command& command) const noexcept;
   [[nodiscard]] bool waits(const Command::Setpoint& setpoint) const noexcept;
   [[nodiscard]] bool followsThePast(const Command::Setpoint& setpoint, const Command& command) const noexcept;
@@ -151,8 +152,11 @@ class Supervisor {
   }
   /// Its group acts together, and not all of it is ACTIVE.
   [[nodiscard]] bool waitsForGroup(std::size_t motor) const noexcept;
+  /// Its group acts together, and a member of it has lost its reference.
   [[nodiscard]] bool groupLostPlace(std::size_t motor) const noexcept;
+  /// A motor that followed an angle has lost its reference in this tick.
   void noteLostPlace(std::size_t motor) noexcept;
+  /// Ends the angles of the others in that tick.
   void endPlacesOf(MotorGroup& group, const Tick& tick) noexcept;
   [[nodiscard]] bool clearEstop(const Order& order, OrderResult& result, const Tick& tick) noexcept;
   void settle(std::size_t motor, Refusal outcome) noexcept;

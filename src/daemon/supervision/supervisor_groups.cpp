@@ -62,7 +62,7 @@ bool Supervisor::groupLostPlace(std::size_t motor) const noexcept {
   return group != nullptr && group->together && alone_ != motor && group->without_place.any();
 }
 
-// The other motors of one thing would drive on to a place that this one does not know any more.
+// The other motors of the load would drive on to a place that this one does not know any more.
 void Supervisor::noteLostPlace(std::size_t motor) noexcept {
   auto* group = groupOf(motor);
   if (group == nullptr || !group->together || alone_ == motor || !group->required.test(motor)) return;

@@ -131,8 +131,7 @@ void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
   if (recorder_ != nullptr) recorder_->command(command, blackbox::Verdict::kApplied, skipped);
 }
 
-// Where one of the motors that move one thing cannot follow this message, none of them does: half of it would
-// rack what they move.
+// A message that one motor of a group cannot follow moves none of the group: half of it would rack the load.
 MotorSet Supervisor::heldBackBy(const Command& command) const noexcept {
   MotorSet held_back;
   if (groups_.empty()) return held_back;  // most often
@@ -147,7 +146,7 @@ MotorSet Supervisor::heldBackBy(const Command& command) const noexcept {
   return held_back;
 }
 
-// Before all of a group are ACTIVE a COAST would let go of those that are, of what the others hold.
+// A COAST before all of a group are ACTIVE would free those that are, while the others still hold the load.
 bool Supervisor::waits(const Command::Setpoint& setpoint) const noexcept {
   if (groups_.empty()) return false;  // most often
   const auto& axis = axes_[setpoint.motor];

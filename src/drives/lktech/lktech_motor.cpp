@@ -162,7 +162,7 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   const double reach_deg = 4294967296.0 * lktech::kDegPerRaw / traits().gear_ratio;
   const double off_deg = shortestWay(position_deg_ + shift_deg_, angle_deg, reach_deg);
   if (!counted_ || std::abs(off_deg) > 180.0) {
-    // In a silence a drive that has not started may have turned as far.
+    // A drive that went on through a silence may have turned as far.
     const bool lost = was_counted_ && std::abs(off_deg) > 180.0 && (counted_ || countsAfresh(angle_deg));
     if (lost) {
       loseReference();

@@ -86,7 +86,7 @@ void VescInquiry::ask(const Tick& tick) noexcept {
   if (!hurry && tick.now - asked_ < every) return;
   if (!answered) {
     ++unanswered_;
-    // A drive that is silent, too, shows nothing by that.
+    // Silence both ways is no sign of deafness: a cut cable, a pause.
     if (spoke_) ++ignored_;
   }
   spoke_ = false;

@@ -105,8 +105,8 @@ std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedba
   return limits;
 }
 
-// A spring that becomes stiffer pulls no harder for that: where something leads its place, that goes on from
-// the place which gives the torque of before. Without stiffness it is at no place, and begins at the shaft.
+// A spring that becomes stiffer keeps its torque: a place that is slewed goes on from where the new stiffness
+// gives the same. Without stiffness there is no place, and it begins at the shaft.
 void TargetShaper::stiffen(const Target& asked, const MotorFeedback& feedback) noexcept {
   const bool led = config_.angle_slew_deg_per_s > 0.0F || reduced() || share_ < 1.0;
   const double before = std::exchange(stiffness_nm_per_rad_, static_cast<double>(asked.stiffness_nm_per_rad));

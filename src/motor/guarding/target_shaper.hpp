@@ -15,8 +15,8 @@ namespace rc10 {
 /// inertia it was tuned for still stops before the limit.
 inline constexpr float kApproachOfAngleGain = 0.5F;
 
-/// The same of the spacing of samples and commands: share of the distance that the shaft goes before the next
-/// command that knows of it.
+/// Likewise for the spacing of samples and commands: share of the way left that may pass before the next
+/// command.
 inline constexpr float kApproachOfSpacing = 0.5F;
 
 /// Slew limit and range of a target. At the output shaft; 0: no slew limit.
@@ -27,7 +27,7 @@ struct ShapingConfig {
   double angle_min_deg = -std::numeric_limits<double>::infinity();  ///< Soft limits of the total angle.
   double angle_max_deg = std::numeric_limits<double>::infinity();
   float approach_rpm_per_deg = 0.0F;  ///< Speed allowed towards a soft limit, per degree before it.
-  float feedback_period_s = 0.0F;     ///< Bounds that approach, with the next one; 0: no bound.
+  float feedback_period_s = 0.0F;     ///< With command_period_s it bounds that approach; 0: no bound.
   float command_period_s = 0.0F;
   float approach_effort_per_rpm = 0.0F;  ///< Effort allowed towards it, per rpm below the allowed speed.
   bool approach_effort_is_gain = false;  ///< It is the proportional gain of the velocity loop on the host.

@@ -124,7 +124,7 @@ void SessionRequests::release(const std::vector<std::string>& motors) {
   core_.just_enabled.release(motors);
 }
 
-// Whatever the answer will be, nothing is sent again to what is to stop.
+// Targets of motors that are to stop are not sent again, whatever the answer will be.
 void SessionRequests::releaseBefore(const std::string& operation, const std::string& target) {
   if (operation == toString(Operation::kEstop)) release({});
   if (operation != toString(Operation::kDisable)) return;

@@ -1,4 +1,4 @@
-// Motors that move one thing: what one of them cannot follow, none does.
+// Groups that act together: a message that one member cannot follow moves none.
 
 #include <initializer_list>
 #include <string>
