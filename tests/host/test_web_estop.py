@@ -50,11 +50,8 @@ def test_an_estop_of_a_page_gets_in_while_rc10d_answers_nobody(web: Web, daemon:
     daemon.must("enable")
     with web.page() as page:
         page.wait("state")
-        daemon.program.signal(signal.SIGSTOP)
-        try:
+        with daemon.program.stopped():
             told = page.ask("estop")
-        finally:
-            daemon.program.signal(signal.SIGCONT)
         assert told["message"].startswith("the e-stop was sent and is not confirmed: ")
         page.wait("state", lambda state: state["data"]["state"] == "ESTOP")
 
@@ -64,11 +61,8 @@ def test_a_page_that_has_asked_before_hears_that_rc10d_does_not_answer(
 ) -> None:
     with web.page() as page:
         assert page.ask("enable", "wheel")["status"] == "ok"
-        daemon.program.signal(signal.SIGSTOP)
-        try:
+        with daemon.program.stopped():
             told = page.ask("estop")
-        finally:
-            daemon.program.signal(signal.SIGCONT)
         assert told["status"] == "failed"
         assert told["message"] == (
             "the e-stop was sent and is not confirmed: rc10d does not answer"

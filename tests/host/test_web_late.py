@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -46,11 +45,8 @@ def test_a_request_that_waited_for_an_rc10d_that_stood_still_does_nothing(
     with web.program, web.page() as page:
         assert page.ask("disable", "wheel")["status"] == "ok"
         daemon.must("estop")
-        daemon.program.signal(signal.SIGSTOP)
-        try:
+        with daemon.program.stopped():
             told = page.ask("clear")
-        finally:
-            daemon.program.signal(signal.SIGCONT)
         assert (told["status"], told["message"]) == ("failed", "rc10d does not answer")
         # Behind it, on the same connection.
         assert page.ask("disable", "wheel")["status"] == "ok"

@@ -353,48 +353,46 @@ struct LightAxis {
   }
 };
 
+/// Homes the axis. A sample comes every `every_ms`, with the current that `told` makes of the time and the
+/// true one.
+template <typename Told>
+JointHoming::Progress home(LightAxis& axis, Duration stopped, int every_ms, Told told) {
+  JointHoming homing(
+      {.velocity_rpm = -10.0, .current_a = 4.0, .away_deg = 5.0, .stopped = stopped, .timeout = 10s});
+  JointHoming::Measured measured;
+  homing.start(measured);
+  auto progress = JointHoming::Progress::kUnderWay;
+  for (int ms = 1; progress == JointHoming::Progress::kUnderWay; ++ms) {
+    axis.step(homing.current());
+    measured.now += 1ms;
+    if (ms % every_ms == 0) {
+      measured.received = measured.now;
+      measured.total_angle_deg = axis.deg;
+      measured.velocity_rpm = axis.rpm;
+      measured.current_a = told(ms, homing.current());
+    }
+    progress = homing.step(measured);
+  }
+  return progress;
+}
+
 TEST(JointHoming, ALightAxisIsNotThrownByFeedbackThatComesSlowly) {
   for (const int every_ms : {1, 2, 5, 10, 20, 50}) {
-    JointHoming homing(
-        {.velocity_rpm = -10.0, .current_a = 4.0, .away_deg = 5.0, .stopped = 200ms, .timeout = 10s});
     LightAxis axis;
-    JointHoming::Measured measured;
-    homing.start(measured);
-    auto progress = JointHoming::Progress::kUnderWay;
-    for (int ms = 1; progress == JointHoming::Progress::kUnderWay; ++ms) {
-      axis.step(homing.current());
-      measured.now += 1ms;
-      if (ms % every_ms == 0) {
-        measured.received = measured.now;
-        measured.total_angle_deg = axis.deg;
-        measured.velocity_rpm = axis.rpm;
-        measured.current_a = homing.current();
-      }
-      progress = homing.step(measured);
-    }
+    const auto progress = home(axis, 200ms, every_ms, [](int, double current_a) { return current_a; });
     EXPECT_EQ(progress, JointHoming::Progress::kFound) << every_ms << " ms";
     EXPECT_LT(axis.fastest_rpm, 20.0) << every_ms << " ms";
   }
 }
 
 TEST(JointHoming, AGapOfTheCurrentIsWaitedForAndIsNoFullCurrent) {
-  JointHoming homing(
-      {.velocity_rpm = -10.0, .current_a = 4.0, .away_deg = 5.0, .stopped = 100ms, .timeout = 10s});
   LightAxis axis;
-  JointHoming::Measured measured;
-  homing.start(measured);
-  auto progress = JointHoming::Progress::kUnderWay;
   int told = 0;
-  for (int ms = 1; progress == JointHoming::Progress::kUnderWay; ++ms) {
-    axis.step(homing.current());
-    measured.received = measured.now += 1ms;
-    measured.total_angle_deg = axis.deg;
-    measured.velocity_rpm = axis.rpm;
-    const bool gap = ms % 800 != 0;
-    measured.current_a = gap ? std::numeric_limits<double>::quiet_NaN() : homing.current();
-    if (!gap && axis.deg == -40.0) ++told;
-    progress = homing.step(measured);
-  }
+  const auto progress = home(axis, 100ms, 1, [&](int ms, double current_a) {
+    if (ms % 800 != 0) return std::numeric_limits<double>::quiet_NaN();
+    if (axis.deg == -40.0) ++told;
+    return current_a;
+  });
   EXPECT_EQ(progress, JointHoming::Progress::kFound);
   EXPECT_GE(told, 2) << "once for each meeting with the end";
 }

@@ -111,6 +111,15 @@ class Program:
         if number == signal.SIGSTOP:
             os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
+    @contextlib.contextmanager
+    def stopped(self) -> Iterator[None]:
+        """Stands still, as in a debugger, and goes on at the end."""
+        self.signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self.signal(signal.SIGCONT)
+
     def interrupt(self) -> None:
         """As Ctrl-C does: to every process of the group."""
         os.killpg(self.pid, signal.SIGINT)
