@@ -39,6 +39,10 @@ struct Text {
   }
   /// Safe on bytes from a stranger: never reads past the room.
   [[nodiscard]] std::string_view view() const noexcept { return {chars.data(), ::strnlen(chars.data(), N)}; }
+  /// As comparing view() does, with a third of the instructions: a tick compares a name for each setpoint.
+  [[nodiscard]] bool equals(const Text& other) const noexcept {
+    return std::strncmp(chars.data(), other.chars.data(), N) == 0;
+  }
 
  private:
   static constexpr bool isContinuation(char c) noexcept {

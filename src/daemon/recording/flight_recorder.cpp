@@ -95,7 +95,7 @@ void FlightRecorder::signals(const SignalMessage& message, blackbox::Verdict ver
 }
 
 bool FlightRecorder::isNew(const SignalMessage& message, LastSignals& last) const noexcept {
-  const bool same = now_ < last.until && last.client.view() == message.client.view() &&
+  const bool same = now_ < last.until && last.client.equals(message.client) &&
                     std::equal(message.values.begin(), message.values.end(), last.values.begin(),
                                [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
   if (same) return false;

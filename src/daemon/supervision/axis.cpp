@@ -154,17 +154,17 @@ Refusal Axis::motionRefusal(const Tick& tick) const noexcept {
 
 // ---- Once a tick
 
-bool Axis::losesReference(const Tick& tick) noexcept {
+Axis::Loss Axis::noteReference(const Tick& tick) noexcept {
   const auto& feedback = motor_.feedback();
   // An absolute one may have been found again within this tick.
   const bool lost = reference_known_ && (!feedback.zeroed || feedback.losses != losses_);
   reference_known_ = feedback.zeroed;
   losses_ = feedback.losses;
-  if (lost && needsReference(motor_.target().mode)) {
-    dropTarget();
-    beginTimeoutFallback({StopCause::kReference}, tick);
-  }
-  return lost;
+  if (!lost) return Loss::kNone;
+  if (!needsReference(motor_.target().mode)) return Loss::kReference;
+  dropTarget();
+  beginTimeoutFallback({StopCause::kReference}, tick);
+  return Loss::kPlace;
 }
 
 void Axis::endPlace(const Stop& why, const Tick& tick) noexcept {
@@ -275,7 +275,7 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (shaper_.hasSoftLimits()) shaper_.reckon(motor_.feedback(), tick.now);
   if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
   auto kind = frameKind(robot);
-  if (awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;
+  if ((kind == FrameKind::kHold || ramp_unmeasured_) && awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;
   if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
     shaper_.reset();
@@ -303,7 +303,7 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
 // no reason to leave the one of before it: a load would sink meanwhile.
 bool Axis::awaitsFeedback(FrameKind kind, const Tick& tick) noexcept {
   if (kind == FrameKind::kHold) return motor_.ordered() != FrameKind::kHold && !fresh(tick) && !stood();
-  if (!ramp_unmeasured_ || kind != FrameKind::kCommand || !ramps()) return false;
+  if (kind != FrameKind::kCommand || !ramps()) return false;
   const bool measured = fresh(tick);
   if (!measured && !stood()) return true;
   ramp_unmeasured_ = false;

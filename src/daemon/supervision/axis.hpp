@@ -64,8 +64,17 @@ class Axis {
 
   // ---- Once a tick
 
-  /// Its angle has just lost its reference; a target of an angle has ended with it.
-  [[nodiscard]] bool losesReference(const Tick& tick) noexcept;
+  enum class Loss : std::uint8_t {
+    kNone,
+    kReference,
+    kPlace,  ///< A target of an angle has ended with it.
+  };
+  /// Whether its angle has just lost its reference.
+  [[nodiscard]] Loss losesReference(const Tick& tick) noexcept {
+    const auto& feedback = motor_.feedback();
+    if (feedback.zeroed == reference_known_ && feedback.losses == losses_) return Loss::kNone;
+    return noteReference(tick);
+  }
   /// The native code of a fault that its drive reports: fault() from now on.
   [[nodiscard]] std::optional<std::uint32_t> complains(const Tick& tick) noexcept;
   /// The end of an enable sequence.
@@ -160,6 +169,8 @@ class Axis {
   /// Its drive stores settings, and may be silent meanwhile.
   [[nodiscard]] bool silenceExcused() noexcept;
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
+  /// Its reference is another than in the last tick.
+  [[nodiscard]] Loss noteReference(const Tick& tick) noexcept;
   /// Speed and effort of reduced mode for this tick. Trip::kFault: it is faster than it may be, and no
   /// resistance can take the place of what acts. Few motors have it.
   [[nodiscard, gnu::noinline]] Trip tripsWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;

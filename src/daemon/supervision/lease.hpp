@@ -32,7 +32,7 @@ class Lease {
   [[nodiscard]] bool held(MonotonicTime now) const noexcept { return now < term_.until; }
 
   [[nodiscard]] bool isHolder(const Holder& other) const noexcept {
-    return other.session == holder_.session && other.client.view() == holder_.client.view();
+    return other.session == holder_.session && other.client.equals(holder_.client);
   }
   [[nodiscard]] bool allows(const Holder& other, MonotonicTime now) const noexcept {
     return !held(now) || isHolder(other) || other.priority > holder_.priority;

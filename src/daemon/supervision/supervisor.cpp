@@ -50,10 +50,9 @@ void Supervisor::watch(std::size_t motor, const Axis::Since& since, const Tick& 
   } else if (axis.lost(tick)) {
     transition(motor, MotorEvent::kFeedbackLost, tick);
   }
-  const bool by_place = needsReference(axis.motor().target().mode);
-  if (axis.losesReference(tick)) {
+  if (const auto loss = axis.losesReference(tick); loss != Axis::Loss::kNone) {
     report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});
-    if (by_place) noteLostPlace(motor);
+    if (loss == Axis::Loss::kPlace) noteLostPlace(motor);
   }
   if (const auto native_code = axis.complains(tick))
     fault(motor, static_cast<std::int32_t>(*native_code), tick);
