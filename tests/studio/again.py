@@ -25,8 +25,11 @@ def browser_of(fixtures: dict[str, object]) -> Browser:
     raise TypeError("a test of a held button has a Browser or a Page")
 
 
-# By word of the page: it stood still for longer than a lease, or rc10-web or rc10d did.
-BY_ITSELF = re.compile("stood still|connection was lost|does not take this page")
+# By word of the page or of rc10-web: it stood still for longer than a lease, or one of them or
+# rc10d did.
+BY_ITSELF = re.compile(
+    "stood still|connection was lost|does not take this page|no word of this page|does not answer"
+)
 
 
 def let_go_by_itself(page: Page) -> Locator:
