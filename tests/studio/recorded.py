@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from hostlib import Daemon
 from hostlib.daemon import CONFIG
+from hostlib.program import PATIENCE_S
 
 if TYPE_CHECKING:
     from conftest import Studio
@@ -45,7 +46,8 @@ def record() -> Box:
     # So small that its history has begun anew several times.
     with Daemon("blackbox_mib: 1\n" + CONFIG.format(realtime="preferred")) as daemon:
         daemon.wait_ready()
-        daemon.wait_state(lambda state: state["tick"] > 9000, "its history is full")
+        # Nine seconds where no tick is missed.
+        daemon.wait_state(lambda state: state["tick"] > 9000, "its history is full", 3 * PATIENCE_S)
         daemon.must("enable")
         with daemon.drive("set", "wheel", "velocity", "60", "--for", "60s"):
             daemon.wait_motor("wheel", lambda motor: motor["velocity_rpm"] > 50, "turns")

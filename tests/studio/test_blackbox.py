@@ -162,6 +162,7 @@ def test_a_dropped_file_is_read_and_another_part_of_the_page_does_not_lose_it(
 
 def test_the_last_minutes_of_the_robot_that_runs_are_loaded(part: Page, studio: Studio) -> None:
     studio.daemon.must("enable", "wheel")
+    studio.daemon.wait_motor("wheel", lambda motor: motor["status"] == "ACTIVE", "enabled")
     expect(part.get_by_label("On the robot").locator("option").first).to_have_text(
         "host.blackbox (the last minutes)"
     )
