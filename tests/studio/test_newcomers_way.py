@@ -20,6 +20,8 @@ from test_commission import (
     NOT_JUDGED,
     both_ends,
     held,
+    knows_the_angle,
+    knows_the_turn,
     rests,
     stands,
     told,
@@ -109,6 +111,14 @@ class Newcomer:
         self.parts.append(Part(name, self._clicks, self._fields, now - self._begun))
         self._clicks = self._fields = 0
         self._begun = now
+
+    def so_far(self) -> tuple[int, int]:
+        """Clicks and fields of this part."""
+        return self._clicks, self._fields
+
+    def forget_since(self, before: tuple[int, int]) -> None:
+        """What a machine that stood still has made vain does not count."""
+        self._clicks, self._fields = before
 
     def click(self, target: Locator) -> None:
         target.click()
@@ -212,6 +222,7 @@ def begin(newcomer: Newcomer, motor: str) -> None:
 def turn_once(newcomer: Newcomer, motor: str) -> None:
     newcomer.press(newcomer.card, "Begin")
     newcomer.by_hand(motor, 360)
+    knows_the_turn(newcomer.card)
     newcomer.press(newcomer.card, "The mark is back")
     if NOT_JUDGED in told(newcomer.card).inner_text():
         turned_by_hand(newcomer.studio, newcomer.card, motor)
@@ -288,14 +299,22 @@ def commission_the_elbow(newcomer: Newcomer) -> None:
     expect(told(card)).to_contain_text("zero_deg in the file keeps it")
     newcomer.press(card, "Next")
 
+    before_ends = newcomer.so_far()
+
     def ends() -> None:
         newcomer.by_hand("elbow", -90)
+        knows_the_angle(newcomer.studio, card, "elbow")
         newcomer.press(card, "Lower end is here")
         for _ in range(2):
             newcomer.by_hand("elbow", 90)
+        knows_the_angle(newcomer.studio, card, "elbow")
         newcomer.press(card, "Upper end is here")
 
-    both_ends(card, ends, lambda: zero_again(newcomer.page, card))
+    def anew() -> None:
+        newcomer.forget_since(before_ends)
+        zero_again(newcomer.page, card)
+
+    both_ends(card, ends, anew)
     expect(told(card)).to_contain_text("travel")
     newcomer.by_hand("elbow", -90)
     newcomer.press(card, "Next")
