@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from hostlib.stalls import stood_still_since
 from mcap.reader import make_reader
 from playwright.sync_api import Locator, Page, WebSocketRoute, expect
-from test_capture import panel, step
+from test_capture import has_arrived, panel, step_with
 from test_side_plots import answer_the_past
 
 from conftest import Studio
@@ -117,19 +119,26 @@ def test_the_times_are_those_of_rc10d_and_motors_have_their_topics(
     page: Page, studio: Studio
 ) -> None:
     page.locator("#tab-plots").click()
+    # A standstill is soon out of the picture.
+    page.get_by_label("span").select_option("5")
     page.get_by_role("group", name="yaw").get_by_label("angle_deg", exact=True).check()
     expect(page.locator(".plot > .legend tr")).to_have_count(3)
     expect(page.locator(".plot > .legend td.number").last).not_to_contain_text("\N{EN DASH}")
-    begin_us = studio.daemon.state()["utime"]
-    times_us = [0]
-    while times_us[-1] < begin_us:
-        mcap = Mcap.saved(page, page.get_by_role("button", name="MCAP", exact=True))
-        assert mcap.messages.keys() == {TOPIC, "/host/motor/yaw"}
-        times_us = [time_ns // 1000 for time_ns, _ in mcap.messages[TOPIC]]
-    assert times_us[-1] <= studio.daemon.state()["utime"]
-    assert times_us == sorted(set(times_us))
-    # A busy computer leaves ticks out, and not a third of them.
-    assert len(times_us) > (times_us[-1] - times_us[0]) / 1000 * 2 / 3
+    for _ in range(5):
+        begin_s = time.monotonic()
+        begin_us = studio.daemon.state()["utime"]
+        times_us = [0]
+        while times_us[0] < begin_us:
+            mcap = Mcap.saved(page, page.get_by_role("button", name="MCAP", exact=True))
+            assert mcap.messages.keys() == {TOPIC, "/host/motor/yaw"}
+            times_us = [time_ns // 1000 for time_ns, _ in mcap.messages[TOPIC]]
+        assert times_us[-1] <= studio.daemon.state()["utime"]
+        assert times_us == sorted(set(times_us))
+        # A busy computer leaves ticks out, and not a third of them unless it stands still.
+        enough = len(times_us) > (times_us[-1] - times_us[0]) / 1000 * 2 / 3
+        if enough or not stood_still_since(begin_s, "a picture of each tick"):
+            break
+    assert enough
 
 
 def test_ticks_whose_answer_is_left_out_are_asked_for_again(page: Page) -> None:
@@ -179,7 +188,7 @@ def test_a_writer_that_cannot_be_loaded_is_said_with_its_reason(page: Page) -> N
 
 
 def test_a_capture_is_saved_with_its_gains(page: Page, panel: Locator) -> None:
-    step(page, panel)
+    step_with(page, panel, has_arrived)
     mcap = Mcap.saved(page, panel.get_by_role("button", name="MCAP yaw 1"))
     [(topic, messages)] = mcap.messages.items()
     assert topic == "/host/motor/yaw"
