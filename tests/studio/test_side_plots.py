@@ -6,10 +6,12 @@ import json
 import math
 import re
 import struct
+import time
 from collections.abc import Callable
 from typing import Any
 
 import pytest
+from hostlib.stalls import stood_still_since
 from playwright.sync_api import Page, WebSocketRoute, expect
 
 from conftest import Studio
@@ -126,10 +128,19 @@ def test_the_spectrum_of_a_turning_shaft_has_its_speed(page: Page, studio: Studi
     page.get_by_role("group", name="wheel").get_by_label("angle_deg", exact=True).check()
     page.get_by_role("button", name="Spectrum (FFT)").click()
     page.get_by_role("combobox", name="ticks", exact=True).select_option("4096")
-    with studio.daemon.drive("set", "wheel", "velocity", 300, "--for", "60s"):
-        # 300 rpm are five turns a second.
-        row = page.locator(".peaks tr", has_text="angle_deg")
-        expect(row).to_contain_text(re.compile(r"(4\.[89]|5\.[012])\d Hz"))
+    row = page.locator(".peaks tr", has_text="angle_deg")
+    for left in reversed(range(4)):
+        begin_s = time.monotonic()
+        with studio.daemon.drive("set", "wheel", "velocity", 300, "--for", "60s"):
+            try:
+                # 300 rpm are five turns a second.
+                expect(row).to_contain_text(re.compile(r"(4\.[89]|5\.[012])\d Hz"))
+            except AssertionError:
+                # No four seconds went by in which each tick ran and the target did not lapse.
+                if left == 0 or not stood_still_since(begin_s, "a turning shaft"):
+                    raise
+            else:
+                return
 
 
 def test_the_choice_is_remembered_and_taken_back(page: Page) -> None:
