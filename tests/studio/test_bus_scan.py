@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterator
 
 import pytest
+from commissioning import JOINT, WHEEL, choose, press
 from hostlib import Daemon
 from hostlib.daemon import ARM
 from playwright.sync_api import Locator, Page, WebSocketRoute, expect
-from test_commission import JOINT, WHEEL, choose, press
 
 from conftest import Studio
 

@@ -12,11 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from hostlib import Daemon
-from hostlib.daemon import motor_of
-from hostlib.file_helper import FileHelper, FileRequest
-from playwright.sync_api import Browser, Locator, Page, expect
-from test_commission import (
+from commissioning import (
     NOT_JUDGED,
     both_ends,
     held,
@@ -29,6 +25,10 @@ from test_commission import (
     turning,
     zero_again,
 )
+from hostlib import Daemon
+from hostlib.daemon import motor_of
+from hostlib.file_helper import FileHelper, FileRequest
+from playwright.sync_api import Browser, Locator, Page, expect
 from test_tune import ended, measures, runs_to
 
 from conftest import PATIENCE_MS, Studio, opened_page
@@ -117,7 +117,7 @@ class Newcomer:
         return self._clicks, self._fields
 
     def forget_since(self, before: tuple[int, int]) -> None:
-        """What a machine that stood still has made vain does not count."""
+        """Clicks that a machine which stood still has made vain do not count."""
         self._clicks, self._fields = before
 
     def click(self, target: Locator) -> None:

@@ -272,7 +272,7 @@ def test_before_a_match_each_row_says_what_is_wrong_and_its_remedy(
     notes = row_of(page, "Real time in order").locator(".notes p")
 
     def notes_are_those_of_rc10d() -> bool:
-        """Of the same moment: those that it measures change."""
+        """Those of one moment: some are measured, and change."""
         told = studio.daemon.stats()["notices"]
         shown = [" ".join(text.split()) for text in notes.all_text_contents()]
         return shown == [" ".join(note.replace("`", "").split()) for note in told]
