@@ -28,8 +28,8 @@ from commissioning import (
 from hostlib import Daemon
 from hostlib.daemon import motor_of
 from hostlib.file_helper import FileHelper, FileRequest
+from motion_tests import ended, measures, runs_to
 from playwright.sync_api import Browser, Locator, Page, expect
-from test_tune import ended, measures, runs_to
 
 from conftest import PATIENCE_MS, Studio, opened_page
 
