@@ -226,6 +226,22 @@ TEST(Text, KeepsWhatFits) {
   EXPECT_EQ(Text<8>{}.view(), "");
 }
 
+TEST(Text, EqualsByWhatIsBeforeItsEnd) {
+  Text<8> text{"arm"};
+  text.chars[5] = 'x';
+  EXPECT_TRUE(text.equals(Text<8>{"arm"}));
+  EXPECT_FALSE(text.equals(Text<8>{"arms"}));
+  EXPECT_FALSE((Text<8>{"arms"}.equals(text)));
+}
+
+// Bytes of a stranger may have no end.
+TEST(Text, EqualsWithinItsRoom) {
+  Text<4> full;
+  full.chars = {'a', 'b', 'c', 'd'};
+  EXPECT_TRUE(full.equals(full));
+  EXPECT_FALSE((full.equals(Text<4>{"abc"})));
+}
+
 TEST(Text, IsCutOffAndTerminated) {
   const Text<8> text{"more than eight"};
   EXPECT_EQ(text.view(), "more th");

@@ -275,7 +275,7 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (shaper_.hasSoftLimits()) shaper_.reckon(motor_.feedback(), tick.now);
   if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
   auto kind = frameKind(robot);
-  if ((kind == FrameKind::kHold || ramp_unmeasured_) && awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;
+  if (awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;
   if (kind == FrameKind::kHold && leadsHold(tick)) return;
   if (kind != FrameKind::kCommand) {
     shaper_.reset();
@@ -301,7 +301,7 @@ void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
 
 // After a pause a hold begins at a place, and a ramp at a speed, that is measured then, unless the shaft had
 // no reason to leave the one of before it: a load would sink meanwhile.
-bool Axis::awaitsFeedback(FrameKind kind, const Tick& tick) noexcept {
+bool Axis::beginsUnmeasured(FrameKind kind, const Tick& tick) noexcept {
   if (kind == FrameKind::kHold) return motor_.ordered() != FrameKind::kHold && !fresh(tick) && !stood();
   if (kind != FrameKind::kCommand || !ramps()) return false;
   const bool measured = fresh(tick);

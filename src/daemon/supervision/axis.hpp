@@ -190,7 +190,10 @@ class Axis {
   }
   [[nodiscard]] bool heldWhileEnabling() const noexcept;
   /// True while a hold has no measured place to begin from, or a ramp no measured speed. Sets that speed.
-  [[nodiscard]] bool awaitsFeedback(FrameKind kind, const Tick& tick) noexcept;
+  [[nodiscard]] bool awaitsFeedback(FrameKind kind, const Tick& tick) noexcept {
+    return (kind == FrameKind::kHold || ramp_unmeasured_) && beginsUnmeasured(kind, tick);
+  }
+  [[nodiscard]] bool beginsUnmeasured(FrameKind kind, const Tick& tick) noexcept;
   /// In the last tick, where it was told to: the place that is known is where it is.
   [[nodiscard]] bool stood() const noexcept;
   [[nodiscard]] std::optional<SkipReason> whyNotNow(const Target& target) const noexcept;
