@@ -23,20 +23,25 @@ void SampleSpacing::add(Duration spacing) noexcept {
   ++pending_samples_;
 }
 
-inline float SampleSpacing::takePeriods(float periods) noexcept {
+inline void SampleSpacing::takePeriods(float periods) noexcept {
   const float measured_s = std::clamp(pending_s_ / periods, shortest_s_, longest_s_);
-  period_s_ += (measured_s - period_s_) * kSmoothing;
+  period_s_ += (measured_s - period_s_) * kSmoothing;  // as each measured one: between the bounds
   pending_s_ = 0.0F;
   pending_samples_ = 0;
-  return std::clamp(periods * period_s_, shortest_s_, longest_s_);
 }
 
-float SampleSpacing::takeSeveral() noexcept { return takePeriods(std::round(pending_s_ / period_s_)); }
+float SampleSpacing::takeSeveral() noexcept {
+  const float periods = std::round(pending_s_ / period_s_);
+  takePeriods(periods);
+  return std::clamp(periods * period_s_, shortest_s_, longest_s_);
+}
 
 // Lost frames make the spacing a multiple of the period, late ones do not change how many there are.
 float SampleSpacing::take() noexcept {
   if (pending_samples_ == 0) return 0.0F;
-  return pending_s_ < 1.5F * period_s_ ? takePeriods(1.0F) : takeSeveral();
+  if (!(pending_s_ < 1.5F * period_s_)) return takeSeveral();
+  takePeriods(1.0F);
+  return period_s_;
 }
 
 }  // namespace rc10

@@ -34,7 +34,7 @@ class SampleSpacing {
 
  private:
   /// Takes what is pending as so many periods.
-  [[nodiscard]] float takePeriods(float periods) noexcept;
+  void takePeriods(float periods) noexcept;
   /// A late sample, or several. Not inlined: take() is short without it.
   [[nodiscard, gnu::noinline]] float takeSeveral() noexcept;
 

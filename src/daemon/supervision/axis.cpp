@@ -174,11 +174,9 @@ void Axis::endPlace(const Stop& why, const Tick& tick) noexcept {
 }
 
 // After a clear request an old one is ignored until the request can have taken effect.
-std::optional<std::uint32_t> Axis::complains(const Tick& tick) noexcept {
+std::optional<std::uint32_t> Axis::noteComplaint(const DriveComplaint& complaint, const Tick& tick) noexcept {
   if (status_ == MotorStatus::kOffline || status_ == MotorStatus::kFault) return std::nullopt;
   if (tick.now < clearing_until_) return std::nullopt;
-  const auto complaint = motor_.complaint();
-  if (complaint.fault == FaultCode::kNone) return std::nullopt;
   fault_ = complaint.fault;
   return complaint.native_code;
 }
@@ -367,11 +365,11 @@ TargetShaper::InForce Axis::commandInForce(bool limited) const noexcept {
 }
 
 FrameKind Axis::frameKind(RobotStatus robot) const noexcept {
+  if (status_ == MotorStatus::kActive && motor_.target().mode != ControlMode::kCoast)
+    return FrameKind::kCommand;  // most often
   switch (status_) {
     case MotorStatus::kEnabling: return heldWhileEnabling() ? fallback_.kind() : FrameKind::kEnable;
-    case MotorStatus::kActive:
-      if (motor_.target().mode != ControlMode::kCoast) return FrameKind::kCommand;
-      return fallback_.acts() ? fallback_.kind() : FrameKind::kIdle;
+    case MotorStatus::kActive: return fallback_.acts() ? fallback_.kind() : FrameKind::kIdle;
     case MotorStatus::kReady:
       if (fallback_.acts()) return fallback_.kind();
       break;

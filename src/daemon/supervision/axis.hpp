@@ -76,7 +76,11 @@ class Axis {
     return noteReference(tick);
   }
   /// The native code of a fault that its drive reports: fault() from now on.
-  [[nodiscard]] std::optional<std::uint32_t> complains(const Tick& tick) noexcept;
+  [[nodiscard]] std::optional<std::uint32_t> complains(const Tick& tick) noexcept {
+    const auto complaint = motor_.complaint();
+    if (complaint.fault == FaultCode::kNone) return std::nullopt;  // most often
+    return noteComplaint(complaint, tick);
+  }
   /// The end of an enable sequence.
   [[nodiscard]] std::optional<MotorEvent> endsEnabling(const Tick& tick) const noexcept;
   enum class Trip : std::uint8_t {
@@ -171,6 +175,8 @@ class Axis {
   [[nodiscard]] FrameKind frameKind(RobotStatus robot) const noexcept;
   /// Its reference is another than in the last tick.
   [[nodiscard]] Loss noteReference(const Tick& tick) noexcept;
+  [[nodiscard]] std::optional<std::uint32_t> noteComplaint(const DriveComplaint& complaint,
+                                                           const Tick& tick) noexcept;
   /// Speed and effort of reduced mode for this tick. Trip::kFault: it is faster than it may be, and no
   /// resistance can take the place of what acts. Few motors have it.
   [[nodiscard, gnu::noinline]] Trip tripsWhenReduced(bool reduced, bool moves, const Tick& tick) noexcept;

@@ -43,12 +43,12 @@ void Supervisor::watch(std::size_t motor, const Axis::Since& since, const Tick& 
   auto& axis = axes_[motor];
   const auto who = static_cast<std::int16_t>(motor);
   const bool fresh = axis.listen(tick, since);
-  if (axis.missesDrive(tick))
-    report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
   if (fresh) {
     transition(motor, MotorEvent::kFeedbackFresh, tick);
-  } else if (axis.lost(tick)) {
-    transition(motor, MotorEvent::kFeedbackLost, tick);
+  } else {
+    if (axis.missesDrive(tick))
+      report({EventCode::kNeverHeard, Severity::kWarning, who, axis.id(), 0, tick.now});
+    if (axis.lost(tick)) transition(motor, MotorEvent::kFeedbackLost, tick);
   }
   if (const auto loss = axis.losesReference(tick); loss != Axis::Loss::kNone) {
     report({EventCode::kReferenceLost, Severity::kWarning, who, 0, 0, tick.now});

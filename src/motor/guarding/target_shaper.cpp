@@ -87,7 +87,7 @@ bool TargetShaper::firstStepAllowed(const Target& asked, const Target& before,
   return !(std::fabs(reachable(here_deg + asked_deg, true, travel) - here_deg) > config_.max_first_step_deg);
 }
 
-std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, InForce in_force,
+std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, const InForce& in_force,
                                  float dt_s) noexcept {
   if (!follows(target.mode)) begin(target, feedback, in_force);
   if (mode_ == ControlMode::kImpedance) stiffen(target, feedback);
@@ -96,7 +96,7 @@ std::uint32_t TargetShaper::step(Target& target, const MotorFeedback& feedback, 
   return shape(target, feedback, in_force, dt_s) | kLimitSlew;
 }
 
-std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
+std::uint32_t TargetShaper::slowDown(Target& target, const MotorFeedback& feedback, const InForce& in_force,
                                      float dt_s) noexcept {
   if (!follows(target.mode)) begin(target, feedback, in_force);
   if (mode_ == ControlMode::kVelocity) value_ = target.value;  // its own time, whatever the slew limit
@@ -158,7 +158,7 @@ void TargetShaper::boundAsked(Target& asked) const noexcept {
   asked.torque_ff_nm = static_cast<float>(within(static_cast<double>(asked.torque_ff_nm), most_nm));
 }
 
-std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
+std::uint32_t TargetShaper::shape(Target& asked, const MotorFeedback& feedback, const InForce& in_force,
                                   float dt_s) noexcept {
   if (isEffort(mode_)) return shapeEffort(asked, feedback, in_force, dt_s);
   if (mode_ != ControlMode::kVelocity && !needsReference(mode_)) return 0;
@@ -174,7 +174,8 @@ inline std::uint32_t TargetShaper::shapeMotion(Target& asked, const MotorFeedbac
 }
 
 // From what acts, in the unit of the mode: the last command may have been a speed.
-void TargetShaper::begin(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept {
+void TargetShaper::begin(const Target& target, const MotorFeedback& feedback,
+                         const InForce& in_force) noexcept {
   const auto mode = target.mode;
   mode_ = mode;
   speed_bounds_effort_ = false;
@@ -209,7 +210,8 @@ void TargetShaper::openTravel(double here_deg) noexcept {
 // A load that a fallback holds stays held: an angle goes on from the held one, beside which a loaded spring
 // is. Torque in force that the spring of an impedance does not give, or the damper of a speed, begins as a
 // feed-forward.
-void TargetShaper::takeOver(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept {
+void TargetShaper::takeOver(const Target& target, const MotorFeedback& feedback,
+                            const InForce& in_force) noexcept {
   const auto mode = target.mode;
   if (mode == ControlMode::kAngle || mode == ControlMode::kTotalAngle) value_ = in_force.held_deg;
   const bool told = in_force.unit == CommandUnit::kAmpere;
@@ -379,7 +381,7 @@ double TargetShaper::torqueUnderCeiling(const MotorFeedback& feedback, float dt_
   return ceiling_nm_;
 }
 
-std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feedback, InForce in_force,
+std::uint32_t TargetShaper::shapeEffort(Target& asked, const MotorFeedback& feedback, const InForce& in_force,
                                         float dt_s) noexcept {
   if (in_force.limited && isUnitOf(in_force.unit, mode_))
     value_ = leftOf(value_, static_cast<double>(in_force.value));

@@ -78,10 +78,10 @@ class TargetShaper {
   /// which is otherwise of use only where it is limited.
   [[nodiscard]] bool follows(ControlMode mode) const noexcept { return mode == mode_; }
   /// Shapes `target`; the set of LimitFlag that act. `dt_s`: since the last step.
-  [[nodiscard]] std::uint32_t step(Target& target, const MotorFeedback& feedback, InForce in_force,
+  [[nodiscard]] std::uint32_t step(Target& target, const MotorFeedback& feedback, const InForce& in_force,
                                    float dt_s) noexcept;
   /// The same for a stop, which is never soft.
-  [[nodiscard]] std::uint32_t slowDown(Target& target, const MotorFeedback& feedback, InForce in_force,
+  [[nodiscard]] std::uint32_t slowDown(Target& target, const MotorFeedback& feedback, const InForce& in_force,
                                        float dt_s) noexcept;
   [[nodiscard]] bool hasSoftLimits() const noexcept { return soft_limits_; }
   /// In each tick, before a step, where hasSoftLimits(): beyond a late sample the shaft has gone on.
@@ -154,14 +154,14 @@ class TargetShaper {
   void followFromOutside(const MotorFeedback& feedback) noexcept;
   /// The soft limits as bounds, farther out where the shaft or value_ is beyond one.
   void openTravel(double here_deg) noexcept;
-  void begin(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
-  void takeOver(const Target& target, const MotorFeedback& feedback, InForce in_force) noexcept;
+  void begin(const Target& target, const MotorFeedback& feedback, const InForce& in_force) noexcept;
+  void takeOver(const Target& target, const MotorFeedback& feedback, const InForce& in_force) noexcept;
   void soften(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
   [[gnu::noinline]] void stiffen(const Target& asked, const MotorFeedback& feedback) noexcept;
   void boundAsked(Target& asked) const noexcept;
   [[nodiscard]] bool slew(double goal, float per_second, float dt_s) noexcept;
   // Each shapes its part of the target and returns the limits that act.
-  [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, InForce in_force,
+  [[nodiscard]] std::uint32_t shape(Target& asked, const MotorFeedback& feedback, const InForce& in_force,
                                     float dt_s) noexcept;
   /// A speed or an angle.
   [[nodiscard]] std::uint32_t shapeMotion(Target& asked, const MotorFeedback& feedback, float dt_s) noexcept;
@@ -176,7 +176,7 @@ class TargetShaper {
                                     double sign) const noexcept;
   [[nodiscard]] double torqueUnderCeiling(const MotorFeedback& feedback, float dt_s) noexcept;
   [[nodiscard, gnu::noinline]] std::uint32_t shapeEffort(Target& asked, const MotorFeedback& feedback,
-                                                         InForce in_force, float dt_s) noexcept;
+                                                         const InForce& in_force, float dt_s) noexcept;
   [[nodiscard]] std::uint32_t boundBySpeed(Target& asked, const MotorFeedback& feedback) noexcept;
   [[nodiscard, gnu::noinline]] std::uint32_t shapeVelocity(Target& asked, const MotorFeedback& feedback,
                                                            float dt_s) noexcept;
