@@ -293,7 +293,8 @@ void Oracle::followFeedback(const Snapshot& snapshot) {
     const Duration ran = std::min(now_ - before_, 2 * config_.period());
     const auto most_rpm = kSlow * static_cast<double>(motor.config->standstill_rpm);
     const auto& measured = motor.wire->measured();
-    motor.stood = motor.stood || std::fabs(measured.velocity_rpm) <= most_rpm + measured.velocity_step_rpm;
+    if (std::fabs(measured.velocity_rpm) > most_rpm + measured.velocity_step_rpm) motor.fast_at = now_;
+    motor.stood = motor.stood || motor.reported_at - std::max(motor.fast_at, motor.acts_since) >= kSettled;
     motor.unheard = !heard ? motor.unheard + ran : young ? now_ - motor.reported_at : Duration{};
     if (!fresh(motor) && !overdue(motor)) ++visits_.unread_after_pauses;
   }

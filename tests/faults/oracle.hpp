@@ -24,6 +24,9 @@ namespace rc10::test {
 /// Time of fallbacks in a stop (docs/safety.md); then rest.
 inline constexpr Duration kLongestFallback = std::chrono::seconds{1};
 
+/// Standstill that ends a fallback after a disable, less a tick or two.
+inline constexpr Duration kSettled = std::chrono::milliseconds{290};
+
 [[nodiscard]] constexpr bool lost(MotorStatus status) noexcept {
   return status == MotorStatus::kOffline || status == MotorStatus::kFault;
 }
@@ -155,7 +158,8 @@ class Oracle {
         false;  ///< Its feedback was not fresh then: the speed is that of the next sample.
     std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
-    bool stood = false;         ///< Since it began,
+    MonotonicTime fast_at{};    ///< It was seen to turn then.
+    bool stood = false;         ///< For kSettled, by what was seen, since the fallback began,
     bool of_estop = false;      ///< of the robot.
     double held_deg = kUnsaid;  ///< Where a hold of a loop of rc10d began.
     MonotonicTime held_at{};    ///< Its last sample since,

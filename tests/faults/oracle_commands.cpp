@@ -22,8 +22,6 @@ constexpr double kFast = 0.3;  ///< Share of the no-load speed: a brake must opp
 constexpr double kRampSlack = 0.1;
 // Standstill that a ramp waits for after its time; and a frame may be on its way.
 constexpr Duration kRampEnd = 260ms;
-// Standstill that ends a fallback after a disable, less a tick or two.
-constexpr Duration kSettled = 290ms;
 
 // Time beyond `reduced_within_ms` for a drive that gets commands in some ticks only.
 constexpr Duration kReducedSlack = 100ms;

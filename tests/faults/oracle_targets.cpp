@@ -69,7 +69,10 @@ void Oracle::followTargets(std::size_t index, const MotorSnapshot& seen) {
   const auto mode = acts ? seen.target.mode : ControlMode::kCoast;
   const bool begins = acts && mode != track.mode;
   const bool by_place = acts && actsByPlace(seen.target);
-  if (by_place && !track.by_place) judgeFirstAngle(index, seen);
+  // A spring need not have led its shaft to its place.
+  const bool led =
+      track.by_place && (track.mode != ControlMode::kImpedance || mode == ControlMode::kImpedance);
+  if (by_place && !led) judgeFirstAngle(index, seen);
   track.by_place = by_place;
   const auto turn_ticks = static_cast<std::uint64_t>(motor.config->settings.command_divider);
   const auto ticks = mode != track.mode ? track.change(mode, tick_, turn_ticks) : 1;

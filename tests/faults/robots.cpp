@@ -65,6 +65,8 @@ buses:
          on_estop: damp, hold_max_s: 1, current_slew_a_per_s: 50}
       - {name: lift, model: RS03, id: 21, control: position, current_limit_a: 10, velocity_limit_rpm: 60, direction: -1,
          on_timeout: hold, on_disable: brake, on_estop: brake}
+      - {name: wrist, model: CyberGear, id: 22, current_limit_a: 8, velocity_limit_rpm: 120, on_timeout: damp,
+         on_disable: hold, on_estop: damp, hold_max_s: 0.5, angle_min_deg: -90, angle_max_deg: 120, zero: power_on}
   - name: ankles
     type: sim
     motors:
@@ -89,11 +91,11 @@ buses:
          feedback_hz: 200}
       - {name: winch, model: ODrive_v3, id: 4, torque_constant_nm_per_a: 0.04, current_limit_a: 15,
          velocity_limit_rpm: 400, direction: -1, gear_ratio: 4, on_timeout: hold, on_estop: hold, hold_max_s: 0.5,
-         feedback_hz: 200, current_slew_a_per_s: 100}
+         feedback_hz: 200, telemetry_hz: 100, current_slew_a_per_s: 100}
   - name: shooters
     type: sim
     motors:
-      - {name: shooter, model: VESC, id: 10, pole_pairs: 7, motor_current_max_a: 40, current_limit_a: 30,
+      - {name: shooter, model: VESC, id: 10, pole_pairs: 7, angle: none, motor_current_max_a: 40, current_limit_a: 30,
          reduced_velocity_rpm: 300, reduced_within_ms: 200, reduced_current_a: 15,
          velocity_limit_rpm: 3000, kv_rpm_per_v: 190, on_timeout: damp, on_disable: brake, on_estop: ramp,
          feedback_hz: 200, current_slew_a_per_s: 200}
@@ -233,8 +235,8 @@ buses:
   - name: tables
     type: sim
     motors:
-      - {name: turntable, model: RMD-X8-20, id: 22, current_limit_a: 6, velocity_limit_rpm: 60, command_divider: 2,
-         velocity_slew_rpm_per_s: 200, angle_slew_deg_per_s: 150, current_slew_a_per_s: 30, on_timeout: damp,
+      - {name: turntable, model: RMD-X8-20, id: 22, absolute_encoder: true, current_limit_a: 6, velocity_limit_rpm: 60,
+         command_divider: 2, velocity_slew_rpm_per_s: 200, angle_slew_deg_per_s: 150, current_slew_a_per_s: 30, on_timeout: damp,
          on_disable: brake, on_estop: brake}
       - {name: pan, model: LK-MG5010E-i10, id: 5, velocity_limit_rpm: 100, current_limit_a: 5, command_divider: 2,
          velocity_slew_rpm_per_s: 200, angle_slew_deg_per_s: 200, on_timeout: ramp, ramp_s: 0.3}

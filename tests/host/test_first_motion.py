@@ -9,12 +9,14 @@ import signal
 import subprocess
 import termios
 import threading
+import time
 from typing import TYPE_CHECKING
 
 import pytest
 from hostlib import Daemon
 from hostlib.daemon import ARM, BIN, CONFIG
 from hostlib.program import eventually
+from hostlib.stalls import stood_still_since
 
 import rc10
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from hostlib.daemon import Motor
 
 RIGHT = b"\x1b[C"
+TRIES = 5
 # The spin of a motor that has no load would be over sooner.
 WHOLE_SECOND = ("--over-speed", "10000")
 
@@ -132,7 +135,8 @@ HIDES_A_TURN = b"nothing can be judged: commission again"
 
 def in_the_spin(daemon: Daemon, *words: str, stalled: bool = False) -> Person:
     """The person who commissions yaw, at the first line that is shown of the spin."""
-    for _ in range(5):
+    for _ in range(TRIES):
+        begin_s = time.monotonic()
         person = Person(daemon, "yaw", *words)
         turn_by_hand(person, daemon, "yaw", 360, stalled=stalled)
         person.sees("Type its name", HIDES_A_TURN.decode())
@@ -141,6 +145,7 @@ def in_the_spin(daemon: Daemon, *words: str, stalled: bool = False) -> Person:
             person.sees("  current  target")
             return person
         person.end()
+        assert stood_still_since(begin_s, "a turn by hand"), person.output
     pytest.fail("a pause in each turn by hand")
 
 
@@ -151,12 +156,14 @@ def commissioned(
     meanwhile: Callable[[], None] = lambda: None,
 ) -> tuple[int, bytes]:
     """The whole commission of yaw."""
-    for _ in range(5):
+    for _ in range(TRIES):
+        begin_s = time.monotonic()
         person = in_the_spin(daemon, *words, stalled=stalled)
         meanwhile()
         code = person.end()
         if HIDES_A_TURN not in person.output:
             return code, person.output
+        assert stood_still_since(begin_s, "a spin"), person.output
     pytest.fail("a pause in each spin")
 
 

@@ -128,6 +128,7 @@ def test_a_program_leaves_a_motor_that_was_stopped_and_enabled_before_its_first_
             left = was_left(hello, seldom)
         if turns:
             break
+    assert turns, "it had ended each time before the motor was stopped"
     assert left, hello.output
 
 

@@ -271,7 +271,10 @@ bool Axis::lapses(const Tick& tick) noexcept {
 
 void Axis::order(RobotStatus robot, const Tick& tick) noexcept {
   if (shaper_.hasSoftLimits()) shaper_.reckon(motor_.feedback(), tick.now);
-  if (fallback_.acts()) fallback_.step(standsStill(), motor_.feedback().total_angle_deg, tick.now);
+  if (fallback_.acts()) {
+    const auto& feedback = motor_.feedback();
+    fallback_.step({standsStill(), feedback.total_angle_deg, feedback.received}, tick.now);
+  }
   auto kind = frameKind(robot);
   if (awaitsFeedback(kind, tick)) kind = FrameKind::kIdle;
   if (kind == FrameKind::kHold && leadsHold(tick)) return;

@@ -59,6 +59,8 @@ class Axis {
   [[nodiscard]] bool missesDrive(const Tick& tick) noexcept;
   [[nodiscard]] int id() const noexcept { return entry_.id; }
   [[nodiscard]] bool standsStill() const noexcept;
+  /// Time of its last sample: nothing is known of the time since.
+  [[nodiscard]] MonotonicTime heardAt() const noexcept { return motor_.feedback().received; }
   /// Reason why an e-stop must not end yet: it turns, or may do so.
   [[nodiscard]] Refusal motionRefusal(const Tick& tick) const noexcept;
 

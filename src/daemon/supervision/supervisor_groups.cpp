@@ -139,6 +139,7 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
     return;
   }
   const auto needed = group.required | group.rearm;
+  auto seen = tick.now;
   for (const auto motor : group.motors) {
     if (!needed.test(motor)) continue;
     const bool optional = !group.required.test(motor);
@@ -152,11 +153,12 @@ void Supervisor::rearm(std::size_t index, const Tick& tick) noexcept {
       group.rearm.reset();
       return;
     }
-    const bool turns = status != MotorStatus::kOffline && !axes_[motor].standsStill();
-    if (waited_for || turns) group.moved = tick.now;
+    const bool heard = status != MotorStatus::kOffline;
+    if (heard) seen = std::min(seen, axes_[motor].heardAt());
+    if (waited_for || (heard && !axes_[motor].standsStill())) group.moved = tick.now;
   }
   if (configuring_ && group.required.test(configuring_->motor)) group.moved = tick.now;
-  if (tick.now - group.moved < kAtRest) return;
+  if (seen - group.moved < kAtRest) return;
   // Somebody may have enabled them meanwhile. A group that acts together and was not whole is refused.
   const auto asked = std::exchange(group.rearm, {}) & ~group.on(axes_);
   MotorSet rearmed;

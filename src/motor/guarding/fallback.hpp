@@ -121,25 +121,32 @@ class Fallback {
                                : ramp_.from_rpm * static_cast<double>(seconds(left) / seconds(ramp_.over));
   }
 
-  /// Once per tick while it acts. `angle_deg`: of all turns.
-  void step(bool stands_still, double angle_deg, MonotonicTime now) noexcept {
+  /// What its motor was last seen to do.
+  struct Seen {
+    bool stands_still = false;
+    double angle_deg = 0.0;    ///< Of all turns.
+    MonotonicTime received{};  ///< Nothing is known of the time since.
+  };
+  /// Once per tick while it acts.
+  void step(const Seen& seen, MonotonicTime now) noexcept {
     if (acts() && now >= ends_) end();
     const bool becomes = acts() && bounded_ && now >= bound_ && kind_ != then_;
     if (becomes) kind_ = then_;
-    if (std::isnan(still_deg_)) still_deg_ = angle_deg;
+    if (std::isnan(still_deg_)) still_deg_ = seen.angle_deg;
     // A load that was held begins to move only now, and may sink more slowly than what counts as standstill.
-    if (!stands_still || becomes || std::fabs(angle_deg - still_deg_) > kStrayDeg) {
+    if (!seen.stands_still || becomes || std::fabs(seen.angle_deg - still_deg_) > kStrayDeg) {
       moved_ = now;
-      still_deg_ = angle_deg;
+      still_deg_ = seen.angle_deg;
     }
     // A hold is for a load that would move by itself: that it stands still proves nothing, nor does it under
     // the brake of a drive that cannot damp.
     const bool proves = kind_ == FrameKind::kDamp || !bounded_;
-    if (until_ == Until::kStandstill && proves && now - moved_ >= kSettled) end();
+    if (until_ == Until::kStandstill && proves && seen.received - moved_ >= kSettled) end();
   }
 
  private:
-  // Standstill after which it is not on its way back from an overshoot.
+  // Standstill after which it is not on its way back from an overshoot: to the last sample, for in a pause or
+  // a silence a load may sink.
   static constexpr Duration kSettled = std::chrono::milliseconds{300};
 
   // Way within kSettled that is none: noise of an encoder, and its steps.

@@ -59,11 +59,13 @@ constexpr double kEffortAgainShare = 0.8;
   return effort < 0.0 ? std::clamp(told, -most, 0.0) : std::clamp(told, 0.0, most);
 }
 
-// Part of what `asked` does by its place that `before` did already.
+// Part of what `asked` does by its place that `before` did already. A spring need not have led the shaft to
+// its place: an angle after it does all anew.
 [[nodiscard]] double shareInForce(const Target& asked, const Target& before) noexcept {
   if (!actsByPlace(before)) return 0.0;
-  const bool springs = asked.mode == ControlMode::kImpedance && before.mode == ControlMode::kImpedance;
-  if (!springs || !(asked.stiffness_nm_per_rad > before.stiffness_nm_per_rad)) return 1.0;
+  if (before.mode != ControlMode::kImpedance) return 1.0;
+  if (asked.mode != ControlMode::kImpedance) return 0.0;
+  if (!(asked.stiffness_nm_per_rad > before.stiffness_nm_per_rad)) return 1.0;
   return static_cast<double>(before.stiffness_nm_per_rad) / static_cast<double>(asked.stiffness_nm_per_rad);
 }
 

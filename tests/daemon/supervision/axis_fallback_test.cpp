@@ -222,6 +222,19 @@ TEST_F(FallbackTest, ALoadThatADisableHoldsSinksAfterwardsAndDoesNotFall) {
   EXPECT_NEAR(rpm(), sinking_rpm, 1.0F) << "it grows no faster";
 }
 
+TEST_F(FallbackTest, ALoadThatSinksIsDampedThroughAPause) {
+  start({.on_disable = FallbackAction::kDamp}, 1.0F);
+  robot->order(Operation::kDisable);
+  robot->run(500);
+  EXPECT_LT(rpm(), -1.0F);
+  robot->freezeSimulation(true);
+  robot->tick(330);
+  robot->freezeSimulation(false);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+  robot->run(500);
+  EXPECT_EQ(robot->motor(kLeft).acting, Acting::kDamp);
+}
+
 TEST_F(FallbackTest, ABrakeInAnEstopDampsAfterItsTimeAndNeverCoasts) {
   start({.on_estop = FallbackAction::kBrake, .brake_max = 2s}, 1.0F);
   estop();

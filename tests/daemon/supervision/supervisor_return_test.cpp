@@ -9,8 +9,8 @@
 namespace rc10::test::supervisor_return_test {
 namespace {
 
-/// Two wheels, on a bus each. Seconds for which one is pushed.
-class ReturnTest : public ::testing::TestWithParam<int> {
+/// Two wheels, on a bus each.
+class ReturnTest : public ::testing::Test {
  protected:
   VirtualRobot robot{
       robotOfText("robot: cart\nrealtime: preferred\nbuses:\n"
@@ -19,7 +19,10 @@ class ReturnTest : public ::testing::TestWithParam<int> {
                   "groups: [{name: wheels, motors: [left, right], on_return: rearm_at_rest}]\n")};
 };
 
-TEST_P(ReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {
+/// Seconds for which one is pushed.
+class PushedReturnTest : public ReturnTest, public ::testing::WithParamInterface<int> {};
+
+TEST_P(PushedReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {
   robot.run(100);
   ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
   robot.run(50);
@@ -47,7 +50,24 @@ TEST_P(ReturnTest, IsOverTenSecondsAfterTheLossHoweverTheTimeWasSpent) {
       << "an order that switches it on";
 }
 
-INSTANTIATE_TEST_SUITE_P(Pushed, ReturnTest, ::testing::Values(2, 11, 30),
+TEST_F(ReturnTest, ComesOnlyWhenRestWasSeenNotAfterATimeInWhichNothingWas) {
+  robot.run(100);
+  ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+  robot.run(50);
+  robot.freezeBus(1, true);
+  robot.run(100);
+  robot.freezeBus(1, false);
+  robot.run(20);
+  ASSERT_EQ(robot.motor(1).status, MotorStatus::kReady);
+  robot.freezeSimulation(true);
+  robot.tick(600);
+  for (std::size_t motor = 0; motor < 2; ++motor) EXPECT_EQ(robot.motor(motor).status, MotorStatus::kReady);
+  robot.freezeSimulation(false);
+  robot.run(400);
+  for (std::size_t motor = 0; motor < 2; ++motor) EXPECT_EQ(robot.motor(motor).status, MotorStatus::kActive);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seconds, PushedReturnTest, ::testing::Values(2, 11, 30),
                          [](const auto& each) { return "For" + std::to_string(each.param) + "Seconds"; });
 
 }  // namespace

@@ -15,8 +15,9 @@ class FallbackTest : public ::testing::Test {
              const FallbackBound& bound = {}) {
     fallback.begin(action, until, bound, {.from_rpm = 100.0, .over = 1s}, start);
   }
-  FrameKind after(Duration time, bool stands_still = false, double angle_deg = 0.0) {
-    fallback.step(stands_still, angle_deg, start + time);
+  /// `unheard`: age of the sample.
+  FrameKind after(Duration time, bool stands_still = false, double angle_deg = 0.0, Duration unheard = {}) {
+    fallback.step({stands_still, angle_deg, start + time - unheard}, start + time);
     return fallback.kind();
   }
 
@@ -97,6 +98,14 @@ TEST_F(FallbackTest, StandstillEndsItOnlyAfterATimeWithoutMovement) {
   EXPECT_EQ(after(300ms, false), FrameKind::kDamp) << "back from an overshoot";
   EXPECT_EQ(after(600ms - kInstant, true), FrameKind::kDamp);
   EXPECT_EQ(after(600ms, true), FrameKind::kRest);
+}
+
+TEST_F(FallbackTest, ATimeInWhichNothingIsHeardIsNoStandstill) {
+  begin(FallbackAction::kDamp, Fallback::Until::kStandstill);
+  EXPECT_EQ(after(250ms, true), FrameKind::kDamp);
+  EXPECT_EQ(after(340ms, true, 0.4, 41ms), FrameKind::kDamp) << "a load that sinks slowly, after a pause";
+  EXPECT_EQ(after(2s, true, 0.4, 1701ms), FrameKind::kDamp);
+  EXPECT_EQ(after(2s, true, 0.4, 1700ms), FrameKind::kRest);
 }
 
 TEST_F(FallbackTest, StandstillNeverEndsAHold) {

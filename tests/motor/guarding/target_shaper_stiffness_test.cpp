@@ -27,6 +27,12 @@ TEST_F(TargetShaperTest, AnImpedanceThatIsHardlyStiffIsHardlyAtAPlace) {
   EXPECT_TRUE(shaper.firstStepAllowed(spring, spring, feedback));
   spring.value = 29.0;
   EXPECT_TRUE(shaper.firstStepAllowed(spring, soft_spring, feedback));
+  for (const auto mode : {ControlMode::kAngle, ControlMode::kTotalAngle}) {
+    const Target angle{.mode = mode, .value = mode == ControlMode::kAngle ? -60.0 : 300.0};
+    EXPECT_FALSE(shaper.firstStepAllowed(angle, soft_spring, feedback)) << "a loop is as stiff as can be";
+    EXPECT_TRUE(shaper.firstStepAllowed(angle, angle, feedback));
+    EXPECT_TRUE(shaper.firstStepAllowed({.mode = mode, .value = 29.0}, soft_spring, feedback));
+  }
   spring.value = 300.0;
   EXPECT_NEAR(step(spring).target.value, 0.13, 1e-6) << "with the torque of before, and a tick of its slew";
 }
