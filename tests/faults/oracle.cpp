@@ -415,8 +415,10 @@ void Oracle::judgeSnapshot(const Snapshot& snapshot, std::uint64_t periods) {
     require(i, (seen.status == MotorStatus::kFault) == (seen.fault != FaultCode::kNone),
             "a fault without its reason, or a reason without the fault");
     if (!motor.reported) continue;
-    require(i, feedback.angle_deg >= 0.0F && feedback.angle_deg < 360.0F, "an angle beyond the circle");
-    require(i, std::isfinite(feedback.total_angle_deg), "no reading");
+    const bool in_circle = feedback.angle_deg >= 0.0F && feedback.angle_deg < 360.0F;
+    const bool tells_none = !motor.config->traits().modes.contains(ControlMode::kTotalAngle);
+    require(i, in_circle || (tells_none && std::isnan(feedback.angle_deg)), "an angle beyond the circle");
+    require(i, tells_none || std::isfinite(feedback.total_angle_deg), "no reading");
     require(i, feedback.received == motor.reported_at, "another time than received");
     const double apart_rpm = static_cast<double>(feedback.velocity_rpm) - motor.wire->measured().velocity_rpm;
     const double wrap_rpm = motor.wire->measured().velocity_wrap_rpm;

@@ -124,7 +124,7 @@ class Fallback {
   /// What its motor was last seen to do.
   struct Seen {
     bool stands_still = false;
-    double angle_deg = 0.0;    ///< Of all turns.
+    double angle_deg = 0.0;    ///< Turns counted.
     MonotonicTime received{};  ///< Nothing is known of the time since.
   };
   /// Once per tick while it acts.
