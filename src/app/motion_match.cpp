@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rc10 {
 namespace {
@@ -28,7 +29,10 @@ std::optional<double> MotionMatch::lagSeconds() const noexcept {
   return static_cast<double>(*lag_) * period_s_;
 }
 
-double MotionMatch::motorThen() const noexcept { return ago(std::min(lag_.value_or(0), count_)).motor; }
+double MotionMatch::motorThen() const noexcept {
+  const std::size_t lag = lag_.value_or(0);
+  return lag < count_ ? ago(lag).motor : std::numeric_limits<double>::quiet_NaN();
+}
 
 void MotionMatch::reset() noexcept {
   candidates_.fill({});

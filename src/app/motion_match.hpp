@@ -29,7 +29,8 @@ class MotionMatch {
   [[nodiscard]] Sign sign() const noexcept { return sign_; }
   /// Empty until a motion has shown it.
   [[nodiscard]] std::optional<double> lagSeconds() const noexcept;
-  /// The motor's signal when the sensor's value was true; the latest until the lag is known.
+  /// The motor's signal when the sensor's value was true; the latest until the lag is known. NaN after a gap
+  /// that is not longer ago than the lag.
   [[nodiscard]] double motorThen() const noexcept;
   /// Forgets what was learned.
   void reset() noexcept;

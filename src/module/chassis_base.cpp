@@ -146,11 +146,14 @@ void Chassis_Base::update(const Tick& tick, ModuleRobot& robot) noexcept {
   setOutput(kOutWz, fresh ? now.wz_deg_s : kNoSignal);
   setOutput(kOutPower, power_w);
   setOutput(kOutFactor, factor);
-  if (!commanded() || !allObey(robot) || !ready(robot)) {
-    // The next command begins with the present motion: a robot that rolls is not stopped in a jump.
+  // A command begins with the present motion: a robot that rolls is not stopped in a jump. Until that is
+  // heard it waits.
+  const bool drives = commanded() && allObey(robot) && ready(robot);
+  if (!drives || !begun_) {
+    begun_ = fresh;
     slew_.reset(finiteOrRest(now));
-    return;
   }
+  if (!drives || !begun_) return;
   drive(slew_.step({.vx_m_s = twist.vx_m_s * factor,
                     .vy_m_s = twist.vy_m_s * factor,
                     .wz_deg_s = twist.wz_deg_s * factor},

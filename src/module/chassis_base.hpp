@@ -68,6 +68,7 @@ class Chassis_Base : public Module_Base {
   std::optional<SignalPlace> follow_;
   std::optional<SignalPlace> turn_after_;  ///< That angle, while turning brings it nearer.
   TwistSlewLimiter slew_;
+  bool begun_ = false;  ///< slew_ goes on from a motion that was measured.
   PlanarOdometry odometry_;
   MotionMatch heading_match_;
   double wheels_heading_deg_ = 0.0;

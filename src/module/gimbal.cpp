@@ -104,7 +104,7 @@ class Gimbal : public Module_Base {
         pitch_motor_(own.motor("pitch")),
         pitch_min_deg_(own.number("pitch_min_deg")),
         pitch_max_deg_(own.number("pitch_max_deg")),
-        silence_max_(std::chrono::milliseconds{static_cast<int>(own.number("silence_max_s") * 1000.0)}),
+        silence_max_s_(own.number("silence_max_s")),
         names_{own.text("imu_yaw"), own.text("imu_yaw_rate"), own.text("imu_pitch")},
         signs_{signOf(own, "imu_yaw_reversed"), signOf(own, "imu_yaw_reversed"),
                signOf(own, "imu_pitch_reversed")},
@@ -242,8 +242,9 @@ class Gimbal : public Module_Base {
   // After the last command it holds its direction for silence_max_s, since a gimbal that is let go falls. Not
   // for ever: its client may be gone for good.
   void holdOn(bool ready, const Tick& tick, ModuleRobot& robot) noexcept {
-    if (commanded()) commanded_at_ = tick.now;
-    const bool silent = tick.now - commanded_at_ >= silence_max_;
+    silent_s_ =
+        commanded() ? 0.0 : silent_s_ + static_cast<double>(tick.dt_s);  // in a pause nobody could be heard
+    const bool silent = silent_s_ >= silence_max_s_;
     if (ready && was_commanded_ && !commanded() && silent) robot.report(kSilent);
     was_commanded_ = ready && (commanded() || (was_commanded_ && !silent));
   }
@@ -279,7 +280,7 @@ class Gimbal : public Module_Base {
   std::size_t pitch_motor_;
   double pitch_min_deg_;
   double pitch_max_deg_;
-  Duration silence_max_;
+  double silence_max_s_;
   std::array<std::string, kImuSignals> names_;
   std::array<double, kImuSignals> signs_;
   std::array<std::optional<SignalPlace>, kImuSignals> places_;
@@ -296,7 +297,7 @@ class Gimbal : public Module_Base {
   bool was_by_imu_pitch_ = false;
   bool was_stabilised_ = false;
   bool was_commanded_ = false;
-  MonotonicTime commanded_at_{};
+  double silent_s_ = 0.0;
 };
 
 class GimbalType : public ModuleType {

@@ -194,7 +194,7 @@ class GpioModule : public Module_Base {
       const bool held = output.held_back.step(
           {.given = std::isfinite(asked), .safe = wanted == output.safe},
           {.usable = running && image_->open, .dropped = lost || (!running && !output.keeps_at_estop)},
-          tick.now);
+          static_cast<double>(tick.dt_s));
       held_back |= held;
       in_vain |= running && held && wanted != output.safe;
       const bool value = held ? output.safe : wanted;

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <chrono>
-#include <optional>
-
-#include "app/time.hpp"
-
 namespace rc10 {
 
 /// Interlock of an output: after a start, an e-stop or a loss of its line it keeps its safe value until it is
@@ -14,7 +9,7 @@ class HeldBack {
  public:
   /// Time without a command after which a program has let go: shorter gaps are those of one that sends
   /// rarely.
-  static constexpr Duration kLetGo = std::chrono::seconds{1};
+  static constexpr double kLetGoSeconds = 1.0;
 
   struct Command {
     bool given = false;  ///< Somebody commands it,
@@ -25,18 +20,19 @@ class HeldBack {
     bool dropped = false;  ///< It was lost, or an e-stop is in force that this output obeys.
   };
 
-  /// One tick. True: the safe value counts, whatever is commanded.
-  [[nodiscard]] bool step(const Command& command, const Line& line, MonotonicTime now) noexcept {
-    if (!command.safe || !asked_) asked_ = now;
+  /// One tick. True: the safe value counts, whatever is commanded. `dt_s`: of the tick, since in a pause of
+  /// the scheduler nobody could be heard.
+  [[nodiscard]] bool step(const Command& command, const Line& line, double dt_s) noexcept {
+    unasked_s_ = command.safe ? unasked_s_ + dt_s : 0.0;
     if (line.dropped) held_ = true;
-    const bool let_go = now - *asked_ >= kLetGo;
+    const bool let_go = unasked_s_ >= kLetGoSeconds;
     if (line.usable && (let_go || (command.given && command.safe))) held_ = false;
     return held_;
   }
 
  private:
   bool held_ = true;
-  std::optional<MonotonicTime> asked_;  ///< Last commanded otherwise than safe, or the start.
+  double unasked_s_ = 0.0;  ///< Since it was commanded otherwise than safe, or the start.
 };
 
 }  // namespace rc10

@@ -257,7 +257,7 @@ class Joint : public Module_Base {
         homes_(own.text("homing") != "none"),
         home_angle_deg_(own.number("home_angle_deg")),
         holds_(own.text("on_silence") == "hold"),
-        silence_max_(std::chrono::milliseconds{static_cast<int>(own.number("silence_max_s") * 1000.0)}),
+        silence_max_s_(own.number("silence_max_s")),
         switch_name_(own.text("switch")),
         reference_(own),
         homing_(homingConfig(own, motor)) {}
@@ -331,12 +331,13 @@ class Joint : public Module_Base {
   /// client is a fall nor what another said meanwhile: it would home anew after each.
   [[nodiscard]] bool homeRises(const Tick& tick, ModuleRobot& robot) noexcept {
     if (!commanded()) {
-      if (tick.now - heard_ >= HeldBack::kLetGo) home_is_high_ = false;
+      unheard_s_ += static_cast<double>(tick.dt_s);  // in a pause nobody could be heard
+      if (unheard_s_ >= HeldBack::kLetGoSeconds) home_is_high_ = false;
       return false;
     }
-    const bool lately = heard_ != MonotonicTime{} && tick.now - heard_ < HeldBack::kLetGo;
+    const bool lately = unheard_s_ < HeldBack::kLetGoSeconds;
     const bool taken_over = std::exchange(counted_for_, senderCount()) != senderCount() && lately;
-    heard_ = tick.now;
+    unheard_s_ = 0.0;
     const bool was_high = std::exchange(home_is_high_, input(kHome) >= 0.5);
     if (taken_over && (home_is_high_ || state_ == State::kHoming)) {
       robot.report(kCannotHome);
@@ -418,7 +419,7 @@ class Joint : public Module_Base {
     if (wanted) {
       aim(robot, tick);
       lead(feedback, tick);
-    } else if (holds_ && robot.clientsSilent() < silence_max_) {
+    } else if (holds_ && robot.clientsSilentSeconds() < silence_max_s_) {
       reference_.brake(tick.dt_s);
     } else {
       if (holds_) robot.report(kSilent);
@@ -500,7 +501,7 @@ class Joint : public Module_Base {
   bool homes_;
   double home_angle_deg_;
   bool holds_;
-  Duration silence_max_;
+  double silence_max_s_;
   std::string switch_name_;
   std::optional<SignalPlace> switch_;
   Reference reference_;
@@ -510,7 +511,8 @@ class Joint : public Module_Base {
   Move move_ = Move::kNone;
   bool home_is_high_ = false;
   std::uint32_t counted_for_ = 0;  ///< senderCount() of home_is_high_.
-  MonotonicTime heard_{};          ///< Last tick in which somebody commanded it.
+  /// Since somebody commanded it.
+  double unheard_s_ = std::numeric_limits<double>::infinity();
   bool zero_asked_ = false;
   double target_deg_ = 0.0;
   std::optional<MonotonicTime> beyond_;  ///< Last target that was out of reach.

@@ -59,7 +59,7 @@ class ModuleRobot {
   virtual void forgetReference(std::size_t motor) noexcept = 0;
 
   /// Since a client was last heard: by a command, a request or inputs of a module, or by hearClient().
-  [[nodiscard]] virtual Duration clientsSilent() const noexcept = 0;
+  [[nodiscard]] virtual double clientsSilentSeconds() const noexcept = 0;
   /// A person speaks through this module, as by a remote, and has last done so at `said`: that counts as a
   /// client. In each tick in which it is so, before what follows from it.
   virtual void hearClient(MonotonicTime said) noexcept = 0;

@@ -148,7 +148,7 @@ class Remote : public Module_Base {
       : Module_Base(remoteSignals(*channels)),
         path_(own.text("port")),
         lost_(std::chrono::milliseconds{own.integer("lost_ms")}),
-        disable_(std::chrono::milliseconds{static_cast<int>(own.number("disable_s") * 1000.0)}),
+        disable_s_(own.number("disable_s")),
         arm_channel_(arm_channel),
         arm_above_(own.number("arm_above")),
         sticks_(std::move(sticks)),
@@ -206,7 +206,7 @@ class Remote : public Module_Base {
     if (heard) {
       if (was_heard_ == 0) robot.report(kBack);
       was_heard_ = 1;
-      lost_since_ = tick.now;
+      lost_s_ = 0.0;
       told_to_disable_ = false;
       return;
     }
@@ -214,7 +214,8 @@ class Remote : public Module_Base {
     if (was_heard_ < 0) return;
     if (was_heard_ == 1) robot.report(kLost);
     was_heard_ = 0;
-    if (told_to_disable_ || tick.now - lost_since_ < disable_) return;
+    lost_s_ += static_cast<double>(tick.dt_s);  // in a pause it could not be heard
+    if (told_to_disable_ || lost_s_ < disable_s_) return;
     told_to_disable_ = true;
     armed_ = false;
     // It must go down and up once more.
@@ -307,7 +308,7 @@ class Remote : public Module_Base {
 
   std::string path_;
   Duration lost_;
-  Duration disable_;
+  double disable_s_;
   std::optional<std::size_t> arm_channel_;
   double arm_above_;
   std::vector<Stick> sticks_;
@@ -327,7 +328,7 @@ class Remote : public Module_Base {
   bool switch_known_ = false;  ///< It was seen down since the remote was heard again.
   bool seen_up_ = false;       ///< It was up when it was last seen, before a gap too.
   bool told_to_disable_ = false;
-  MonotonicTime lost_since_{};
+  double lost_s_ = 0.0;
   MonotonicTime arming_until_{};
   MonotonicTime next_try_{};
   std::uint32_t disables_ = 0;  ///< ModuleRobot::disables() of the tick before.

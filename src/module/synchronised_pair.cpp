@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "app/limits.hpp"
+#include "app/units.hpp"
 #include "module/shared_limit.hpp"
 
 namespace rc10 {
@@ -58,8 +60,11 @@ class SynchronisedPair : public Module_Base {
         velocity_limit_rpm_(limit_rpm) {}
 
   void update(const Tick&, ModuleRobot& robot) noexcept override {
-    const double left_deg = robot.feedback(motors_[0]).total_angle_deg;
-    const double right_deg = robot.feedback(motors_[1]).total_angle_deg;
+    // At one instant: after a pause or a lost frame one sample may be much older than the other.
+    const MonotonicTime at =
+        std::max(robot.feedback(motors_[0]).received, robot.feedback(motors_[1]).received);
+    const double left_deg = angleAt(robot.feedback(motors_[0]), at);
+    const double right_deg = angleAt(robot.feedback(motors_[1]), at);
     const double difference_deg = left_deg - right_deg;
     const bool referenced = robot.feedback(motors_[0]).zeroed && robot.feedback(motors_[1]).zeroed;
     const bool active =
@@ -90,6 +95,12 @@ class SynchronisedPair : public Module_Base {
   enum Input : std::size_t { kVelocityRpm, kTotalAngleDeg };
   enum Output : std::size_t { kAngleOut, kDifference, kApart };
   enum EventPlace : std::size_t { kCameApart };
+
+  [[nodiscard]] static double angleAt(const MotorFeedback& feedback, MonotonicTime at) noexcept {
+    const auto rpm = static_cast<double>(finiteOr0(feedback.velocity_rpm));
+    return feedback.total_angle_deg +
+           rpm * kDegPerSPerRpm * static_cast<double>(seconds(at - feedback.received));
+  }
 
   static void turn(ModuleRobot& robot, std::size_t motor, double velocity_rpm, double limit_rpm) noexcept {
     robot.setTarget(

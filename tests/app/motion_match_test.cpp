@@ -52,6 +52,19 @@ TEST_F(MotionMatchTest, TellsTheLagInWholeTicks) {
   }
 }
 
+TEST_F(MotionMatchTest, AfterAGapTheMotorsSpeedOfBeforeItIsNotThatOfThen) {
+  lag = 7;
+  run(1.0);
+  ASSERT_TRUE(match.lagSeconds().has_value());
+  match.step(0.0, std::numeric_limits<double>::quiet_NaN(), dt_s);
+  for (int i = 0; i < 7; ++i) {
+    match.step(0.0, 0.0, dt_s);
+    EXPECT_TRUE(std::isnan(match.motorThen())) << i;
+  }
+  match.step(0.0, 0.0, dt_s);
+  EXPECT_EQ(match.motorThen(), 0.0);
+}
+
 TEST_F(MotionMatchTest, ASlowSensorsLagIsThatOfANewValue) {
   every = 10;
   lag = 12;

@@ -343,6 +343,26 @@ TEST_F(Chassis, ACommandGoesOnFromHowItRolls) {
   EXPECT_NEAR(target(0), rolls_rpm, 0.01);
 }
 
+TEST_F(Chassis, ACommandAfterAPauseWaitsUntilItIsHeardHowItRolls) {
+  buildMecanum();
+  run(2);
+  const double rolls_rpm = 0.4 / (2.0 * std::numbers::pi * 0.076) * 60.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    robot_->motor(i).feedback.velocity_rpm = static_cast<float>(rolls_rpm);
+    robot_->motor(i).heard = false;
+  }
+  robot_->pause(std::chrono::milliseconds{150});
+  robot_->update(*module_);
+  give({.vx_m_s = 0.4});
+  for (int i = 0; i < 3; ++i) robot_->update(*module_);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_FALSE(robot_->motor(i).target.has_value()) << "told nothing that would brake it";
+    robot_->motor(i).heard = true;
+  }
+  robot_->update(*module_);
+  EXPECT_NEAR(target(0), rolls_rpm, 0.01);
+}
+
 TEST_F(Chassis, ThePoseCanBeSet) {
   buildMecanum();
   give({.x_m = 3.0, .y_m = -1.0, .heading_deg = 45.0});

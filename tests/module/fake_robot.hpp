@@ -58,8 +58,10 @@ class FakeRobot : public ModuleRobot {
     module.update(tick_, *this);
   }
 
+  /// The process stands still before the next update.
+  void pause(Duration time) { tick_.now += time; }
   /// Silence of all clients from now on.
-  void silenceClients(Duration silent) { clients_silent_ = silent; }
+  void silenceClients(Duration silent) { clients_silent_s_ = static_cast<double>(seconds(silent)); }
   [[nodiscard]] std::size_t largestRequest() const { return largest_request_; }
   /// In the last update.
   [[nodiscard]] bool clientHeard() const { return client_heard_; }
@@ -106,7 +108,7 @@ class FakeRobot : public ModuleRobot {
     motors_[motor].feedback.zeroed = false;
     ++forgotten_;
   }
-  [[nodiscard]] Duration clientsSilent() const noexcept override { return clients_silent_; }
+  [[nodiscard]] double clientsSilentSeconds() const noexcept override { return clients_silent_s_; }
   void hearClient(MonotonicTime said) noexcept override {
     client_heard_ = true;
     client_said_ = said;
@@ -125,7 +127,7 @@ class FakeRobot : public ModuleRobot {
 
  private:
   Tick tick_{.index = 0, .now = MonotonicTime{std::chrono::seconds{1000}}, .dt_s = 0.001F};
-  Duration clients_silent_{};
+  double clients_silent_s_ = 0.0;
   bool client_heard_ = false;
   MonotonicTime client_said_{};
   std::uint32_t disables_ = 0;

@@ -122,6 +122,19 @@ TEST_F(SynchronisedPair, RestsOnceItHasComeApartUntilItIsDisabled) {
   EXPECT_EQ(target(0), 40.0);
 }
 
+TEST_F(SynchronisedPair, IsNotApartWhereOneIsUnheardForAWhile) {
+  velocity(60.0);
+  for (const std::size_t motor : {0U, 1U}) robot_.motor(motor).feedback.velocity_rpm = 60.0F;
+  robot_.update(*module_);
+  robot_.motor(1).heard = false;
+  for (int i = 0; i < 50; ++i) {
+    robot_.motor(0).feedback.total_angle_deg += 0.36;
+    robot_.update(*module_);
+    ASSERT_NEAR(target(0), 60.0, 0.01) << i;
+    ASSERT_NEAR(target(1), 60.0, 0.01) << i;
+  }
+}
+
 TEST_F(SynchronisedPair, NeitherMovesWhileOneIsNotActiveOrNotReferenced) {
   velocity(40.0);
   robot_.motor(1).status = MotorStatus::kFault;

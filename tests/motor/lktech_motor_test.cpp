@@ -317,7 +317,8 @@ TEST_F(LKTechMotor, TurnsThatTheDriveHasForgottenAreAComplaintWhileItWasToObey) 
 /// At 300 rpm, 20 turns on, after a silence.
 class TurningLKTechMotor : public LKTechMotor {
  protected:
-  void returnAfter(Duration silence, double count_deg) {
+  /// `round`: of firmware that fills four bytes, which go round below 0.
+  void returnAfter(Duration silence, double count_deg, std::int64_t round = 0) {
     comeOnline(0x2000, 20);
     ASSERT_TRUE(motor_->setZero(0.0));
     hear(readingReply(0, 1800, 0x2000));
@@ -326,7 +327,7 @@ class TurningLKTechMotor : public LKTechMotor {
     const double within_deg = count_deg - 360.0 * std::floor(count_deg / 360.0);
     const auto encoder = static_cast<std::uint16_t>(std::lround(within_deg / 360.0 * 65536.0));
     hear(readingReply(0, 1800, encoder));
-    hear(angleReply(std::llround(count_deg * 100.0)));
+    hear(angleReply(std::llround(count_deg * 100.0) + round));
     hear(readingReply(0, 1800, encoder));
   }
 };
@@ -347,6 +348,15 @@ TEST_F(TurningLKTechMotor, WhoseDriveCountsAfreshWasRestarted) {
     SCOPED_TRACE(count_deg);
     motor_ = motorOf(settingsOf());
     returnAfter(std::chrono::milliseconds{300}, count_deg);
+    EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveStopped);
+  }
+}
+
+TEST_F(TurningLKTechMotor, WhoseDriveCountsAfreshInFourBytesWasRestarted) {
+  for (const double count_deg : {-40.0, -340.0}) {
+    SCOPED_TRACE(count_deg);
+    motor_ = motorOf(settingsOf());
+    returnAfter(std::chrono::milliseconds{300}, count_deg, std::int64_t{1} << 32);
     EXPECT_EQ(motor_->complaint().fault, FaultCode::kDriveStopped);
   }
 }

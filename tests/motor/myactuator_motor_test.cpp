@@ -183,6 +183,24 @@ TEST_F(MyActuatorMotor, ARestartWhileItWasToObeyIsAComplaintAndTheReferenceIsLos
   EXPECT_EQ(motor_.complaint().fault, FaultCode::kNone);
 }
 
+TEST_F(MyActuatorMotor, ARestartAfterAMonthIsNoticed) {
+  for (const std::uint32_t uptime_ms : {2'147'483'000U, 2'592'000'000U, 4'294'960'000U}) {
+    SCOPED_TRACE(uptime_ms);
+    uptime_ms_ = uptime_ms;
+    comeOnline(9000);
+    ASSERT_TRUE(motor_.setZero(0.0));
+    (void)told({.mode = ControlMode::kTotalAngle, .value = 10.0});
+    pass(std::chrono::milliseconds{400});
+    (void)tick();
+    hear(uptimeReply(150));
+    EXPECT_EQ(motor_.complaint().fault, FaultCode::kDriveStopped);
+    EXPECT_FALSE(motor_.feedback().zeroed);
+    motor_.order(FrameKind::kPoll);
+    (void)tick();
+    motor_.clearComplaint();
+  }
+}
+
 TEST_F(MyActuatorMotor, ASilenceWithoutARestartKeepsTheReference) {
   comeOnline(9000);
   ASSERT_TRUE(motor_.setZero(0.0));

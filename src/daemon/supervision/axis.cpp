@@ -143,7 +143,7 @@ bool Axis::standsStill() const noexcept {
 // resists, and that turns on after its time to run down, is pulled by a slope or a load: waiting does not end
 // that, and the fallback goes on acting after the e-stop.
 Refusal Axis::motionRefusal(const Tick& tick) const noexcept {
-  if (!lost(tick)) {
+  if (fresh(tick)) {
     const bool pulled = fallback_.resistsFor(entry_.run_down, tick.now);
     return standsStill() || pulled ? Refusal::kNone : Refusal::kMoving;
   }
@@ -425,10 +425,14 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
   return before;
 }
 
-// Somebody asks for it the first time where only a program's end had: that is no second disable.
+// Somebody asks for it the first time where only a program's end had: that is no second disable. Nor is one
+// in the tick of the first: a request may name this motor and one that rests already, which moves the same
+// thing.
 void Axis::disableOnceMore(const Tick& tick) noexcept {
   switch (std::exchange(rested_, Rested::kAsked)) {
-    case Rested::kAsked: return fallback_.end();
+    case Rested::kAsked:
+      if (fallback_.begun() != tick.now) fallback_.end();
+      return;
     case Rested::kUnasked: return;
     case Rested::kStayed:
       // Its hold may have ended since: then nothing begins anew.

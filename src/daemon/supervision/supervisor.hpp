@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -68,8 +69,9 @@ class Supervisor {
   [[gnu::noinline]] void report(Event event) noexcept;
 
   /// A client has said something.
-  void hearClient(MonotonicTime now) noexcept { client_heard_ = now; }
-  [[nodiscard]] MonotonicTime clientHeard() const noexcept { return client_heard_; }
+  void hearClient() noexcept { client_silent_s_ = 0.0; }
+  /// Time since then in which this thread ran: in a pause nobody could be heard.
+  [[nodiscard]] double clientsSilentSeconds() const noexcept { return client_silent_s_; }
 
   /// Count of ModuleRobot::disables().
   [[nodiscard]] std::uint32_t disables() const noexcept { return disables_; }
@@ -196,7 +198,7 @@ class Supervisor {
   MonotonicTime estop_began_{};  ///< Time of the tick in which one began.
   bool reduced_ = false;         ///< The mode input is open, or was a moment ago.
   MonotonicTime mode_opened_{};  ///< Time of the last tick in which it was open.
-  MonotonicTime client_heard_{};
+  double client_silent_s_ = std::numeric_limits<double>::infinity();
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;

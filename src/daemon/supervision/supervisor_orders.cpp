@@ -19,6 +19,7 @@ constexpr Duration kSteadilyClosed = std::chrono::milliseconds{500};
 }  // namespace
 
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
+  client_silent_s_ += static_cast<double>(tick.dt_s);
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
   if (contact.opened) estop({StopCause::kInput}, tick);
@@ -104,7 +105,7 @@ bool Supervisor::mayCommand(const Command& command, const Lease::Holder& sender,
 }
 
 void Supervisor::apply(const Command& command, const Tick& tick) noexcept {
-  hearClient(tick.now);
+  hearClient();
   const Lease::Holder sender{command.client, command.session, command.priority};
   if (tick.now >= command.deadline) {
     ++expired_commands_;
@@ -185,7 +186,7 @@ void Supervisor::skip(const Command::Setpoint& setpoint, SkipReason reason, cons
 
 void Supervisor::carryOut(const Order& order, const Tick& tick) noexcept {
   if (recorder_ != nullptr) recorder_->order(order);
-  if (!order.fromModule()) hearClient(tick.now);
+  if (!order.fromModule()) hearClient();
   if (order.operation == Operation::kConfigure) return configure(order, tick);
   if (order.operation == Operation::kScan) return scan(order, tick);
   OrderResult result;

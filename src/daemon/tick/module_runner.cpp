@@ -70,7 +70,7 @@ void ModuleRunner::take(const SignalMessage& message, MonotonicTime said, const 
   auto& control = controls_[message.module];
   const Lease::Holder sender{message.client, message.session, message.priority};
   const Lease::Term term{message.received, message.deadline};
-  if (message.session != kModuleSession) supervisor_.hearClient(tick.now);
+  if (message.session != kModuleSession) supervisor_.hearClient();
   auto verdict = blackbox::Verdict::kApplied;
   if (!control.lease.allows(sender, term, tick.now)) verdict = blackbox::Verdict::kNotOwner;
   if (tick.now >= message.deadline) verdict = blackbox::Verdict::kExpired;

@@ -60,12 +60,12 @@ class ModuleRunner : private ModuleRobot {
   void forgetReference(std::size_t motor) noexcept override { supervisor_.forgetReference(motor); }
   void ask(RobotRequest request, std::span<const std::size_t> motors) noexcept override;
   void askAll(RobotRequest request) noexcept override;
-  [[nodiscard]] Duration clientsSilent() const noexcept override {
-    return tick_.now - supervisor_.clientHeard();
+  [[nodiscard]] double clientsSilentSeconds() const noexcept override {
+    return supervisor_.clientsSilentSeconds();
   }
   void hearClient(MonotonicTime said) noexcept override {
     said_ = std::min(said_, said);
-    supervisor_.hearClient(tick_.now);
+    supervisor_.hearClient();
   }
   [[nodiscard]] double read(SignalPlace output) const noexcept override;
   void send(SignalPlace input, double value) noexcept override;

@@ -163,7 +163,8 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
   const double off_deg = shortestWay(position_deg_ + shift_deg_, angle_deg, reach_deg);
   if (!counted_ || std::abs(off_deg) > 180.0) {
     // A drive that went on through a silence may have turned as far.
-    const bool lost = was_counted_ && std::abs(off_deg) > 180.0 && (counted_ || countsAfresh(angle_deg));
+    const bool afresh = countsAfresh(shortestWay(0.0, angle_deg, reach_deg));
+    const bool lost = was_counted_ && std::abs(off_deg) > 180.0 && (counted_ || afresh);
     if (lost) {
       loseReference();
       restarted_ = restarted_ || obeying();
@@ -181,7 +182,7 @@ void LKTech_Motor::takeTurns(const CanFrame& frame) noexcept {
       position_deg_ += off_deg;
       position_deg_ += shortestAngle(position_deg_, encoderDeg(*encoder_));
       // Within half a turn of its last count it may have been restarted all the same.
-      if (countsAfresh(angle_deg)) doubtTurn();
+      if (afresh) doubtTurn();
     }
     counted_ = true;
     was_counted_ = true;

@@ -21,7 +21,8 @@ constexpr Duration kMyactuatorQuerySpacing = std::chrono::milliseconds{50};
 constexpr Duration kMyactuatorUrgentQuerySpacing = std::chrono::milliseconds{10};
 /// By how much the drive's clock may be behind ours.
 constexpr std::int64_t kUptimeSlackMs = 250;
-constexpr std::int64_t kUptimeDriftDivider = 200;  // 0.5 %
+constexpr std::int64_t kUptimeRoundMs = std::int64_t{1} << 32;  ///< Its counter has 32 bits.
+constexpr std::int64_t kUptimeDriftDivider = 200;               // 0.5 %
 /// For a drive whose speed is not known, N·m·s/rad: as a small one of these.
 constexpr double kUnknownDamping = 0.5;
 /// Replies with all zeros are copies of requests unless the motor is about so cold.
@@ -163,9 +164,10 @@ void MyActuator_Motor::takeUptime(const CanFrame& frame) noexcept {
   if (uptime_ms == 0) return;  // a copy
   if (uptime_ms_) {
     const std::int64_t elapsed_ms = wholeMilliseconds(frame.received - uptime_at_);
-    const auto expected_ms = static_cast<std::uint32_t>(*uptime_ms_ + static_cast<std::uint64_t>(elapsed_ms));
-    const auto late_ms = static_cast<std::int32_t>(expected_ms - uptime_ms);
-    if (late_ms > kUptimeSlackMs + elapsed_ms / kUptimeDriftDivider) {
+    const std::int64_t late_ms = *uptime_ms_ + elapsed_ms - uptime_ms;
+    const std::int64_t slack_ms = kUptimeSlackMs + elapsed_ms / kUptimeDriftDivider;
+    const bool goes_round = std::abs(late_ms - kUptimeRoundMs) <= slack_ms;
+    if (late_ms > slack_ms && !goes_round) {
       loseReference();
       raw_angle_.reset();
       motion_rad_.reset();

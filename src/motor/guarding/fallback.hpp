@@ -97,6 +97,7 @@ class Fallback {
   /// This kind acts in its place from now on, and ends as it would have.
   void giveWay(FrameKind kind) noexcept { kind_ = then_ = kind; }
   [[nodiscard]] bool acts() const noexcept { return kind_ != FrameKind::kRest; }
+  [[nodiscard]] MonotonicTime begun() const noexcept { return begun_; }
   /// It damps, brakes or holds, and has for at least `time`; a ramp does not count, nor what acts in its
   /// place: it ends.
   [[nodiscard]] bool resistsFor(Duration time, MonotonicTime now) const noexcept {

@@ -59,14 +59,12 @@ constexpr double kEffortAgainShare = 0.8;
   return effort < 0.0 ? std::clamp(told, -most, 0.0) : std::clamp(told, 0.0, most);
 }
 
-// Part of what `asked` does by its place that `before` did already. A spring need not have led the shaft to
-// its place: an angle after it does all anew.
-[[nodiscard]] double shareInForce(const Target& asked, const Target& before) noexcept {
-  if (!actsByPlace(before)) return 0.0;
-  if (before.mode != ControlMode::kImpedance) return 1.0;
-  if (asked.mode != ControlMode::kImpedance) return 0.0;
-  if (!(asked.stiffness_nm_per_rad > before.stiffness_nm_per_rad)) return 1.0;
-  return static_cast<double>(before.stiffness_nm_per_rad) / static_cast<double>(asked.stiffness_nm_per_rad);
+// What `asked` does by its place `before` did already. A spring need not have led the shaft to its place: one
+// that becomes stiffer, and an angle, begin anew.
+[[nodiscard]] bool goesOnFrom(const Target& before, const Target& asked) noexcept {
+  if (!actsByPlace(before)) return false;
+  if (before.mode != ControlMode::kImpedance) return true;
+  return asked.mode == ControlMode::kImpedance && !(asked.stiffness_nm_per_rad > before.stiffness_nm_per_rad);
 }
 
 [[nodiscard]] bool isUnitOf(CommandUnit unit, ControlMode mode) noexcept {
@@ -78,10 +76,9 @@ constexpr double kEffortAgainShare = 0.8;
 
 bool TargetShaper::firstStepAllowed(const Target& asked, const Target& before,
                                     const MotorFeedback& feedback) const noexcept {
-  const double share = 1.0 - shareInForce(asked, before);
-  if (!actsByPlace(asked) || !(share > 0.0)) return true;
+  if (!actsByPlace(asked) || goesOnFrom(before, asked)) return true;
   const double asked_deg = distanceDeg(asked, feedback);
-  if (share * std::fabs(asked_deg) > config_.max_first_step_deg) return false;
+  if (std::fabs(asked_deg) > config_.max_first_step_deg) return false;
   if (asked.mode != ControlMode::kAngle || !bounded(feedback)) return true;
   // Beyond a soft limit the shortest way may be closed, and the other one the way.
   const double here_deg = feedback.total_angle_deg;

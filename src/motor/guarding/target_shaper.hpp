@@ -115,8 +115,8 @@ class TargetShaper {
   }
 
   /// Whether an angle target that follows none is close enough to the measured angle, by the way that its
-  /// soft limits leave; of a spring that follows a softer one, by the share that is new. `before`: the last
-  /// target.
+  /// soft limits leave; likewise a spring that follows a softer one, and an angle that follows a spring.
+  /// `before`: the last target.
   [[nodiscard]] bool firstStepAllowed(const Target& asked, const Target& before,
                                       const MotorFeedback& feedback) const noexcept;
 

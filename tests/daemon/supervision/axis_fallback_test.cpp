@@ -222,6 +222,25 @@ TEST_F(FallbackTest, ALoadThatADisableHoldsSinksAfterwardsAndDoesNotFall) {
   EXPECT_NEAR(rpm(), sinking_rpm, 1.0F) << "it grows no faster";
 }
 
+// Its drive may have let go of it meanwhile.
+TEST_F(FallbackTest, AnEstopIsNotClearedInTheTickAfterAPauseWhileNothingIsHeard) {
+  start({.on_estop = FallbackAction::kHold, .hold_max = 10s}, 1.0F);
+  estop();
+  robot->run(1000);
+  Order clear;
+  clear.id = 1000;
+  clear.operation = Operation::kClear;
+  clear.whole_robot = true;
+  robot->freezeSimulation(true);
+  ASSERT_TRUE(robot->exchange().orders.push(clear));
+  robot->tick(600);
+  EXPECT_EQ(robot->snapshot().state, RobotStatus::kEstop);
+  robot->freezeSimulation(false);
+  robot->run(50);
+  robot->order(Operation::kClear);
+  EXPECT_EQ(robot->snapshot().state, RobotStatus::kRun);
+}
+
 TEST_F(FallbackTest, ALoadThatSinksIsDampedThroughAPause) {
   start({.on_disable = FallbackAction::kDamp}, 1.0F);
   robot->order(Operation::kDisable);

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "blackbox/memory_box.hpp"
+#include "daemon/robot_of_text.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::supervisor_alone_test {
@@ -118,6 +119,24 @@ TEST_F(EnableAloneTest, ThePlainRequestForTheSameMotorEndsNothing) {
   (void)alone(kLeft);
   EXPECT_EQ(enable(kLeft), Refusal::kNone);
   EXPECT_EQ(enable(kRight), Refusal::kAlone);
+}
+
+// The one that rests already moves the same thing: its disable is a second one, that of the other is not.
+TEST(OneOfAPairThatIsEnabledAlone, IsBrakedByADisableOfBoth) {
+  for (const std::size_t alone : {0U, 1U}) {
+    VirtualRobot robot{robotOfText(
+        "robot: lifter\nrealtime: preferred\nbuses:\n  - name: lifts\n    type: sim\n    motors:\n"
+        "      - {name: left, model: M3508, id: 1, on_disable: brake}\n"
+        "      - {name: right, model: M3508, id: 2, on_disable: brake}\n"
+        "groups: [{name: both, motors: [left, right], together: true}]\n")};
+    robot.run(5);
+    ASSERT_EQ(robot.orderFor(only(alone), Operation::kEnableAlone).motors[alone], Refusal::kNone);
+    robot.hold(alone, kVelocity120, 500);
+    robot.orderFor(only(0) | only(1), Operation::kDisable);
+    EXPECT_EQ(robot.motor(alone).acting, Acting::kBrake);
+    robot.orderFor(only(0) | only(1), Operation::kDisable);
+    EXPECT_EQ(robot.motor(alone).acting, Acting::kNothing) << "once more lets go";
+  }
 }
 
 TEST_F(EnableAloneTest, AThirdThatIsHeldStopsWithALostMemberOfItsGroup) {

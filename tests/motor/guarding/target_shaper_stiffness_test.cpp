@@ -37,6 +37,19 @@ TEST_F(TargetShaperTest, AnImpedanceThatIsHardlyStiffIsHardlyAtAPlace) {
   EXPECT_NEAR(step(spring).target.value, 0.13, 1e-6) << "with the torque of before, and a tick of its slew";
 }
 
+TEST_F(TargetShaperTest, AStiffnessThatRisesInStepsLeadsNoFartherThanAFirstStep) {
+  configure({.max_first_step_deg = 180.0});
+  Target spring{.mode = ControlMode::kImpedance, .value = 300.0, .stiffness_nm_per_rad = 0.01F};
+  Target stiffer = spring;
+  for (; spring.stiffness_nm_per_rad < 100.0F; spring = stiffer) {
+    stiffer.stiffness_nm_per_rad *= 1.2F;
+    EXPECT_FALSE(shaper.firstStepAllowed(stiffer, spring, feedback)) << spring.stiffness_nm_per_rad;
+    stiffer.value = 170.0;
+    EXPECT_TRUE(shaper.firstStepAllowed(stiffer, spring, feedback)) << spring.stiffness_nm_per_rad;
+    stiffer.value = 300.0;
+  }
+}
+
 TEST_F(TargetShaperTest, AStiffnessThatRisesPullsNoHarderThanTheSlewOfItsPlace) {
   for (const int ticks : {1, 10, 200}) {
     configure({.angle_slew_deg_per_s = 100.0F});
