@@ -122,7 +122,7 @@ class Fallback {
                                : ramp_.from_rpm * static_cast<double>(seconds(left) / seconds(ramp_.over));
   }
 
-  /// What its motor was last seen to do.
+  /// Last sample of its motor.
   struct Seen {
     bool stands_still = false;
     double angle_deg = 0.0;    ///< Turns counted.
