@@ -59,8 +59,8 @@ constexpr double kEffortAgainShare = 0.8;
   return effort < 0.0 ? std::clamp(told, -most, 0.0) : std::clamp(told, 0.0, most);
 }
 
-// Whether `before` has led the shaft by a place already. A spring need not have: one that becomes stiffer, and
-// an angle, begin anew.
+// Whether `before` has led the shaft by a place already. A spring need not have: one that becomes stiffer,
+// and an angle, begin anew.
 [[nodiscard]] bool goesOnFrom(const Target& before, const Target& asked) noexcept {
   if (!actsByPlace(before)) return false;
   if (before.mode != ControlMode::kImpedance) return true;
