@@ -43,7 +43,12 @@ void Oracle::signalled(const SignalMessage& message) {
 // robot is heard; and then for nobody.
 void Oracle::judgeHolders(const Snapshot& snapshot) {
   const bool heard = std::exchange(client_heard_, false);
+  // In a pause nobody can be heard: it counts as some periods at most.
+  constexpr int kMostPeriodsOfATick = 5;
+  const Duration unwatched =
+      std::max(now_ - before_ - kMostPeriodsOfATick * config_.period(), Duration::zero());
   for (auto& holder : holders_) {
+    holder.valid_until += unwatched;
     if (heard && holder.any_client) holder.valid_until = now_ + kStillHeard;
     const auto name = config_.modules[holder.module].settings.name;
     const bool over = now_ >= holder.valid_until + holder.silence_max + kLapse + 2 * (now_ - before_);
