@@ -163,7 +163,21 @@ TEST_F(MyActuatorMotor, SaysThatTheDrivesOwnWatchdogHasStoppedIt) {
   EXPECT_EQ(motor_.complaint().fault, FaultCode::kNone);
 }
 
-TEST_F(MyActuatorMotor, ARestartWhileItWasToObeyIsAComplaintAndTheReferenceIsLost) {
+class RestartedMyActuatorMotor : public MyActuatorMotor {
+ protected:
+  /// Its drive says that it runs for a moment only.
+  void expectThatItIsNoticed() {
+    hear(uptimeReply(150));
+    EXPECT_EQ(motor_.complaint().fault, FaultCode::kDriveStopped);
+    EXPECT_FALSE(motor_.feedback().zeroed);
+    motor_.order(FrameKind::kPoll);
+    (void)tick();
+    motor_.clearComplaint();
+    EXPECT_EQ(motor_.complaint().fault, FaultCode::kNone);
+  }
+};
+
+TEST_F(RestartedMyActuatorMotor, IsAComplaintWhileItWasToObeyAndTheReferenceIsLost) {
   comeOnline(9000);
   ASSERT_TRUE(motor_.setZero(0.0));
   (void)told({.mode = ControlMode::kTotalAngle, .value = 10.0});
@@ -174,16 +188,10 @@ TEST_F(MyActuatorMotor, ARestartWhileItWasToObeyIsAComplaintAndTheReferenceIsLos
   const auto sent = tick();
   EXPECT_EQ(sent.at(0), kOff) << "its last command may act on";
   EXPECT_THAT(sent, Each(Not(StartsWith("141#A")))) << "told nothing else until it is known";
-  hear(uptimeReply(150));
-  EXPECT_EQ(motor_.complaint().fault, FaultCode::kDriveStopped);
-  EXPECT_FALSE(motor_.feedback().zeroed);
-  motor_.order(FrameKind::kPoll);
-  (void)tick();
-  motor_.clearComplaint();
-  EXPECT_EQ(motor_.complaint().fault, FaultCode::kNone);
+  expectThatItIsNoticed();
 }
 
-TEST_F(MyActuatorMotor, ARestartAfterAMonthIsNoticed) {
+TEST_F(RestartedMyActuatorMotor, IsNoticedAfterAMonth) {
   for (const std::uint32_t uptime_ms : {2'147'483'000U, 2'592'000'000U, 4'294'960'000U}) {
     SCOPED_TRACE(uptime_ms);
     uptime_ms_ = uptime_ms;
@@ -192,12 +200,7 @@ TEST_F(MyActuatorMotor, ARestartAfterAMonthIsNoticed) {
     (void)told({.mode = ControlMode::kTotalAngle, .value = 10.0});
     pass(std::chrono::milliseconds{400});
     (void)tick();
-    hear(uptimeReply(150));
-    EXPECT_EQ(motor_.complaint().fault, FaultCode::kDriveStopped);
-    EXPECT_FALSE(motor_.feedback().zeroed);
-    motor_.order(FrameKind::kPoll);
-    (void)tick();
-    motor_.clearComplaint();
+    expectThatItIsNoticed();
   }
 }
 
