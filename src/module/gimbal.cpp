@@ -10,6 +10,7 @@
 #include "app/limits.hpp"
 #include "app/motion_match.hpp"
 #include "app/units.hpp"
+#include "app/watched_time.hpp"
 #include "module/carried_rate.hpp"
 #include "module/gimbal_axis.hpp"
 #include "module/sensed_angle.hpp"
@@ -242,9 +243,9 @@ class Gimbal : public Module_Base {
   // After the last command it holds its direction for silence_max_s, since a gimbal that is let go falls. Not
   // for ever: its client may be gone for good.
   void holdOn(bool ready, const Tick& tick, ModuleRobot& robot) noexcept {
-    silent_s_ =
-        commanded() ? 0.0 : silent_s_ + static_cast<double>(tick.dt_s);  // in a pause nobody could be heard
-    const bool silent = silent_s_ >= silence_max_s_;
+    silent_.step(tick);
+    if (commanded()) silent_.restart();
+    const bool silent = silent_.seconds() >= silence_max_s_;
     if (ready && was_commanded_ && !commanded() && silent) robot.report(kSilent);
     was_commanded_ = ready && (commanded() || (was_commanded_ && !silent));
   }
@@ -297,7 +298,7 @@ class Gimbal : public Module_Base {
   bool was_by_imu_pitch_ = false;
   bool was_stabilised_ = false;
   bool was_commanded_ = false;
-  double silent_s_ = 0.0;
+  WatchedTime silent_;
 };
 
 class GimbalType : public ModuleType {

@@ -193,8 +193,7 @@ class GpioModule : public Module_Base {
       const bool wanted = std::isfinite(asked) ? asked >= 0.5 : output.safe;
       const bool held = output.held_back.step(
           {.given = std::isfinite(asked), .safe = wanted == output.safe},
-          {.usable = running && image_->open, .dropped = lost || (!running && !output.keeps_at_estop)},
-          static_cast<double>(tick.dt_s));
+          {.usable = running && image_->open, .dropped = lost || (!running && !output.keeps_at_estop)}, tick);
       held_back |= held;
       in_vain |= running && held && wanted != output.safe;
       const bool value = held ? output.safe : wanted;

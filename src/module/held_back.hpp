@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/watched_time.hpp"
+
 namespace rc10 {
 
 /// Interlock of an output: after a start, an e-stop or a loss of its line it keeps its safe value until it is
@@ -20,19 +22,19 @@ class HeldBack {
     bool dropped = false;  ///< It was lost, or an e-stop is in force that this output obeys.
   };
 
-  /// One tick. True: the safe value counts, whatever is commanded. `dt_s`: of the tick, since in a pause of
-  /// the scheduler nobody could be heard.
-  [[nodiscard]] bool step(const Command& command, const Line& line, double dt_s) noexcept {
-    unasked_s_ = command.safe ? unasked_s_ + dt_s : 0.0;
+  /// One tick. True: the safe value counts, whatever is commanded.
+  [[nodiscard]] bool step(const Command& command, const Line& line, const Tick& tick) noexcept {
+    unasked_.step(tick);
+    if (!command.safe) unasked_.restart();
     if (line.dropped) held_ = true;
-    const bool let_go = unasked_s_ >= kLetGoSeconds;
+    const bool let_go = unasked_.seconds() >= kLetGoSeconds;
     if (line.usable && (let_go || (command.given && command.safe))) held_ = false;
     return held_;
   }
 
  private:
   bool held_ = true;
-  double unasked_s_ = 0.0;  ///< Since it was commanded otherwise than safe, or the start.
+  WatchedTime unasked_;  ///< Since it was commanded otherwise than safe, or the start.
 };
 
 }  // namespace rc10

@@ -12,6 +12,7 @@
 #include "app/target.hpp"
 #include "app/trapezoid_profile.hpp"
 #include "app/units.hpp"
+#include "app/watched_time.hpp"
 #include "module/held_back.hpp"
 #include "module/joint_homing.hpp"
 #include "module/joint_homing_check.hpp"
@@ -331,13 +332,13 @@ class Joint : public Module_Base {
   /// client is a fall nor what another said meanwhile: it would home anew after each.
   [[nodiscard]] bool homeRises(const Tick& tick, ModuleRobot& robot) noexcept {
     if (!commanded()) {
-      unheard_s_ += static_cast<double>(tick.dt_s);  // in a pause nobody could be heard
-      if (unheard_s_ >= HeldBack::kLetGoSeconds) home_is_high_ = false;
+      unheard_.step(tick);
+      if (unheard_.seconds() >= HeldBack::kLetGoSeconds) home_is_high_ = false;
       return false;
     }
-    const bool lately = unheard_s_ < HeldBack::kLetGoSeconds;
+    const bool lately = unheard_.seconds() < HeldBack::kLetGoSeconds;
     const bool taken_over = std::exchange(counted_for_, senderCount()) != senderCount() && lately;
-    unheard_s_ = 0.0;
+    unheard_.restart();
     const bool was_high = std::exchange(home_is_high_, input(kHome) >= 0.5);
     if (taken_over && (home_is_high_ || state_ == State::kHoming)) {
       robot.report(kCannotHome);
@@ -510,9 +511,8 @@ class Joint : public Module_Base {
   State state_ = State::kIdle;
   Move move_ = Move::kNone;
   bool home_is_high_ = false;
-  std::uint32_t counted_for_ = 0;  ///< senderCount() of home_is_high_.
-  /// Since somebody commanded it.
-  double unheard_s_ = std::numeric_limits<double>::infinity();
+  std::uint32_t counted_for_ = 0;               ///< senderCount() of home_is_high_.
+  WatchedTime unheard_ = WatchedTime::never();  ///< Since somebody commanded it.
   bool zero_asked_ = false;
   double target_deg_ = 0.0;
   std::optional<MonotonicTime> beyond_;  ///< Last target that was out of reach.

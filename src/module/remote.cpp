@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/nearest.hpp"
+#include "app/watched_time.hpp"
 #include "module/remote_channels.hpp"
 #include "module/serial_keys.hpp"
 
@@ -206,7 +207,7 @@ class Remote : public Module_Base {
     if (heard) {
       if (was_heard_ == 0) robot.report(kBack);
       was_heard_ = 1;
-      lost_s_ = 0.0;
+      lost_time_.restart();
       told_to_disable_ = false;
       return;
     }
@@ -214,8 +215,8 @@ class Remote : public Module_Base {
     if (was_heard_ < 0) return;
     if (was_heard_ == 1) robot.report(kLost);
     was_heard_ = 0;
-    lost_s_ += static_cast<double>(tick.dt_s);  // in a pause it could not be heard
-    if (told_to_disable_ || lost_s_ < disable_s_) return;
+    lost_time_.step(tick);
+    if (told_to_disable_ || lost_time_.seconds() < disable_s_) return;
     told_to_disable_ = true;
     armed_ = false;
     // It must go down and up once more.
@@ -328,7 +329,7 @@ class Remote : public Module_Base {
   bool switch_known_ = false;  ///< It was seen down since the remote was heard again.
   bool seen_up_ = false;       ///< It was up when it was last seen, before a gap too.
   bool told_to_disable_ = false;
-  double lost_s_ = 0.0;
+  WatchedTime lost_time_;
   MonotonicTime arming_until_{};
   MonotonicTime next_try_{};
   std::uint32_t disables_ = 0;  ///< ModuleRobot::disables() of the tick before.

@@ -136,8 +136,7 @@ class SerialLink : public Module_Base {
       const bool safe = wanted == output.safe;
       const bool held = output.held_back.step(
           {.given = given, .safe = safe},
-          {.usable = running && open, .dropped = lost || (!running && !output.keeps_at_estop)},
-          static_cast<double>(tick.dt_s));
+          {.usable = running && open, .dropped = lost || (!running && !output.keeps_at_estop)}, tick);
       held_back |= held;
       in_vain |= running && held && !safe;
       values_[i] = held ? output.safe : wanted;

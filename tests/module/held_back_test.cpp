@@ -10,14 +10,14 @@ constexpr HeldBack::Command kSafe{.given = true, .safe = true};
 constexpr HeldBack::Command kNobody{};
 constexpr HeldBack::Line kUsable{.usable = true};
 constexpr HeldBack::Line kDropped{.usable = true, .dropped = true};
-constexpr double kTick_s = 0.001;
-constexpr double kLateTick_s = 0.005;  // that of a pause of any length
+constexpr Tick kTick{.index = 0, .now = {}, .dt_s = 0.001F};
+constexpr Tick kLateTick{.index = 0, .now = {}, .dt_s = 0.005F};  // that of a pause of any length
 
 class HeldBackTest : public ::testing::Test {
  protected:
   bool after(int ticks, const HeldBack::Command& command) {
     bool held = true;
-    for (int i = 0; i < ticks; ++i) held = held_back_.step(command, kUsable, kTick_s);
+    for (int i = 0; i < ticks; ++i) held = held_back_.step(command, kUsable, kTick);
     return held;
   }
   HeldBack held_back_;
@@ -38,7 +38,7 @@ TEST_F(HeldBackTest, ASecondWithoutACommandLetsItGo) {
 TEST_F(HeldBackTest, APauseIsNoSecondWithoutACommand) {
   (void)after(1, kSafe);
   ASSERT_FALSE(after(100, kAsks));
-  EXPECT_TRUE(held_back_.step(kNobody, kDropped, kLateTick_s));
+  EXPECT_TRUE(held_back_.step(kNobody, kDropped, kLateTick));
   EXPECT_TRUE(after(500, kAsks)) << "the same stream goes on";
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "app/time.hpp"
+#include "app/watched_time.hpp"
 #include "daemon/devices/robot.hpp"
 #include "daemon/exchange/orders.hpp"
 #include "daemon/exchange/rings.hpp"
@@ -69,9 +69,8 @@ class Supervisor {
   [[gnu::noinline]] void report(Event event) noexcept;
 
   /// A client has said something.
-  void hearClient() noexcept { client_silent_s_ = 0.0; }
-  /// Time since then in which this thread ran: in a pause nobody could be heard.
-  [[nodiscard]] double clientsSilentSeconds() const noexcept { return client_silent_s_; }
+  void hearClient() noexcept { client_silent_.restart(); }
+  [[nodiscard]] double clientsSilentSeconds() const noexcept { return client_silent_.seconds(); }
 
   /// Count of ModuleRobot::disables().
   [[nodiscard]] std::uint32_t disables() const noexcept { return disables_; }
@@ -198,7 +197,7 @@ class Supervisor {
   MonotonicTime estop_began_{};  ///< Time of the tick in which one began.
   bool reduced_ = false;         ///< The mode input is open, or was a moment ago.
   MonotonicTime mode_opened_{};  ///< Time of the last tick in which it was open.
-  double client_silent_s_ = std::numeric_limits<double>::infinity();
+  WatchedTime client_silent_ = WatchedTime::never();
   std::uint64_t expired_commands_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t skipped_setpoints_ = 0;

@@ -19,7 +19,7 @@ constexpr Duration kSteadilyClosed = std::chrono::milliseconds{500};
 }  // namespace
 
 void Supervisor::receiveOrders(const Tick& tick) noexcept {
-  client_silent_s_ += static_cast<double>(tick.dt_s);
+  client_silent_.step(tick);
   const auto contact = link_.estop_contact.look(tick.dt_s);
   if (contact.news) report(estopInputEvent(*contact.news, tick.now));
   if (contact.opened) estop({StopCause::kInput}, tick);
