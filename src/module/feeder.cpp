@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/units.hpp"
+#include "app/watched_time.hpp"
 #include "module/module_robot.hpp"
 #include "module/travel_of_motors.hpp"
 
@@ -81,7 +82,7 @@ class Feeder : public Module_Base {
         limit_rpm_(own.number("velocity_limit_rpm")),
         travel_(1, limit_rpm_),
         deg_per_shot_(own.number("deg_per_shot")),
-        jam_time_(std::chrono::milliseconds{own.integer("jam_ms")}),
+        jam_s_(static_cast<double>(own.integer("jam_ms")) * 1e-3),
         reverse_rpm_(std::min(own.number("reverse_rpm"), limit_rpm_)),
         reverse_time_(std::chrono::milliseconds{own.integer("reverse_ms")}),
         retries_(own.integer("retries")) {
@@ -149,13 +150,13 @@ class Feeder : public Module_Base {
     switch (state_) {
       case State::kIdle:
         state_ = State::kFeeding;
-        moved_ = tick.now;
-        [[fallthrough]];
+        still_.restart();
+        break;
       case State::kFeeding: watchJam(wanted_rpm, measured_rpm, tick, robot); break;
       case State::kReversing:
         if (tick.now < reverse_until_) break;
         state_ = State::kFeeding;
-        moved_ = tick.now;
+        still_.restart();
         break;
       case State::kGivenUp: break;
     }
@@ -168,16 +169,18 @@ class Feeder : public Module_Base {
   }
 
   void watchJam(double wanted_rpm, double measured_rpm, const Tick& tick, ModuleRobot& robot) noexcept {
+    still_.step(tick);
+    freed_.step(tick);
     if (measured_rpm * std::copysign(1.0, wanted_rpm) >= kMoves * std::fabs(wanted_rpm)) {
       // It has to go on for as long as a jam lasts before it counts as freed: a ball gives a little.
-      if (in_a_row_ > 0 && tick.now - freed_ >= 2 * jam_time_) {
+      if (in_a_row_ > 0 && freed_.seconds() >= 2 * jam_s_) {
         in_a_row_ = 0;
         robot.report(kFreed);
       }
-      moved_ = tick.now;
+      still_.restart();
       return;
     }
-    if (tick.now - moved_ < jam_time_) return;
+    if (still_.seconds() < jam_s_) return;
     ++jams_;
     if (++in_a_row_ > retries_) {
       state_ = State::kGivenUp;
@@ -187,7 +190,7 @@ class Feeder : public Module_Base {
     if (in_a_row_ == 1) robot.report(kJammed);
     state_ = State::kReversing;
     reverse_until_ = tick.now + reverse_time_;
-    freed_ = reverse_until_;
+    freed_.restart();
   }
 
   void turn(ModuleRobot& robot, double velocity_rpm) const noexcept {
@@ -204,7 +207,7 @@ class Feeder : public Module_Base {
   double limit_rpm_;
   TravelOfMotors travel_;
   double deg_per_shot_;
-  Duration jam_time_;
+  double jam_s_;
   double reverse_rpm_;
   Duration reverse_time_;
   int retries_;
@@ -215,9 +218,9 @@ class Feeder : public Module_Base {
   std::uint32_t counted_for_ = 0;  ///< The sender of last_shots_.
   int in_a_row_ = 0;               ///< Jams without a success between them.
   long jams_ = 0;
-  MonotonicTime moved_{};
   MonotonicTime reverse_until_{};
-  MonotonicTime freed_{};
+  WatchedTime still_;  ///< Since it moved as it is told.
+  WatchedTime freed_;  ///< Of feeding since the last jam.
 };
 
 class FeederType : public ModuleType {

@@ -31,7 +31,7 @@ constexpr double kRestShare = 0.02;
 constexpr double kLeadSeconds = 0.1;
 constexpr double kLeadTolerances = 10.0;
 // A motor that is waited for comes nearer by a tolerance within this time, or is blocked.
-constexpr Duration kBlocked = std::chrono::milliseconds{200};
+constexpr double kBlockedS = 0.2;
 // A target beyond the limits is reported again after this time without one.
 constexpr Duration kBeyondAgain = std::chrono::seconds{1};
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
@@ -253,8 +253,8 @@ class Joint : public Module_Base {
         rest_deg_s_(kRestShare * own.number("max_velocity_deg_s")),
         lead_deg_(leadOf(own)),
         tolerance_deg_(own.number("tolerance_deg")),
-        settle_(std::chrono::milliseconds{own.integer("settle_ms")}),
-        blocked_s_(static_cast<double>(seconds(std::max(settle_, kBlocked)))),
+        settle_s_(static_cast<double>(own.integer("settle_ms")) * 1e-3),
+        blocked_s_(std::max(settle_s_, kBlockedS)),
         homes_(own.text("homing") != "none"),
         home_angle_deg_(own.number("home_angle_deg")),
         holds_(own.text("on_silence") == "hold"),
@@ -443,7 +443,7 @@ class Joint : public Module_Base {
     if (target_deg == target_deg_ && move_ != Move::kNone) return;
     target_deg_ = target_deg;
     move_ = Move::kUnderWay;
-    arrived_ = tick.now;
+    arrived_.restart();
     closest_deg_ = std::numeric_limits<double>::infinity();
     waited_s_ = 0.0;
   }
@@ -475,17 +475,18 @@ class Joint : public Module_Base {
   }
 
   void judge(const MotorFeedback& feedback, const Tick& tick, ModuleRobot& robot, bool wanted) noexcept {
+    arrived_.step(tick);
     if (move_ != Move::kUnderWay || !wanted) return;
     const bool rests = reference_.restsAt(target_deg_);
     const double away_deg = std::fabs(feedback.total_angle_deg - target_deg_);
     // A motor that still comes nearer is slow, and has not failed.
     if (!rests || away_deg < nearest_deg_ - tolerance_deg_) {
-      arrived_ = tick.now;
+      arrived_.restart();
       nearest_deg_ = away_deg;
     }
     if (rests && away_deg <= tolerance_deg_) {
       move_ = Move::kDone;
-    } else if (tick.now - arrived_ >= settle_ || waited_s_ >= blocked_s_) {
+    } else if (arrived_.seconds() >= settle_s_ || waited_s_ >= blocked_s_) {
       move_ = Move::kFailed;
       robot.report(kNotReached);
     }
@@ -497,7 +498,7 @@ class Joint : public Module_Base {
   double rest_deg_s_;
   double lead_deg_;
   double tolerance_deg_;
-  Duration settle_;
+  double settle_s_;
   double blocked_s_;
   bool homes_;
   double home_angle_deg_;
@@ -516,7 +517,7 @@ class Joint : public Module_Base {
   bool zero_asked_ = false;
   double target_deg_ = 0.0;
   std::optional<MonotonicTime> beyond_;  ///< Last target that was out of reach.
-  MonotonicTime arrived_{};              ///< When the reference came to rest at the target, or the
+  WatchedTime arrived_;                  ///< When the reference came to rest at the target, or the
   double nearest_deg_ = 0.0;             ///< motor nearer to it than so.
   bool waited_ = false;                  ///< The reference waits, or has not gone on far since.
   double waited_s_ = 0.0;     ///< Time of waiting while the motor came no nearer than closest_deg_.

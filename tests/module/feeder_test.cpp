@@ -140,6 +140,30 @@ TEST_F(Feeder, AJamIsAnsweredByGoingBackAndFeedingGoesOnOnceItIsFree) {
   EXPECT_EQ(module_->outputs()[2], 1.0);
 }
 
+TEST_F(Feeder, APauseOfTheSchedulerIsNoJam) {
+  ask(30.0);
+  run(50);
+  run(50, true);
+  robot_.pause(std::chrono::seconds{1});
+  run(45, true);
+  EXPECT_EQ(state(), kFeeding) << "it was seen to stand for 95 ms";
+  run(10, true);
+  EXPECT_EQ(state(), kReversing);
+}
+
+TEST_F(Feeder, AMotorHeardBeforeAndAfterAPauseIsNotYetFree) {
+  ask(30.0);
+  run(50);
+  run(101, true);
+  run(100);
+  ASSERT_EQ(state(), kFeeding);
+  robot_.pause(std::chrono::seconds{1});
+  run(50);
+  EXPECT_THAT(events_, ElementsAre(0U));
+  run(150);
+  EXPECT_THAT(events_, ElementsAre(0U, 1U));
+}
+
 TEST_F(Feeder, GivesUpAfterItsRetriesUntilNobodyAsksAnyMore) {
   ask(30.0);
   run(600, true);

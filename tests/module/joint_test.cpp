@@ -178,6 +178,20 @@ TEST_F(Joint, TheReferenceWaitsForAMotorThatIsHeldAndGoesOnWithIt) {
   EXPECT_EQ(angle(), 90.0);
 }
 
+TEST_F(Joint, APauseOfTheSchedulerIsNoTimeInWhichAMoveCouldSettle) {
+  build(jointSettings());
+  blocked_ = true;
+  ask(5.0);
+  for (int i = 0; i < 1000 && target() != 5.0; ++i) run(1);
+  ASSERT_EQ(target(), 5.0);
+  run(100);
+  robot_.pause(std::chrono::seconds{1});
+  run(50);
+  EXPECT_EQ(moved(), kUnderWay) << "of 200 ms it was watched for 150";
+  run(100);
+  EXPECT_EQ(moved(), kFailed);
+}
+
 TEST_F(Joint, AMoveOfAHeldShaftThatShakesHasFailed) {
   for (const double amplitude_deg : {0.9, 1.2, 3.0, 6.0}) {
     for (const double hz : {0.5, 2.0, 10.0}) {
