@@ -46,6 +46,13 @@ constexpr int kLimitedTicks = 20;
   return turn > 0.0 && std::isfinite(to) ? value - turn * std::round((value - to) / turn) : value;
 }
 
+// A spring need not have led its shaft to its place.
+[[nodiscard]] bool isLed(const Target& before, const Target& asked) {
+  if (!actsByPlace(before)) return false;
+  if (before.mode != ControlMode::kImpedance) return true;
+  return asked.mode == ControlMode::kImpedance && asked.stiffness_nm_per_rad <= before.stiffness_nm_per_rad;
+}
+
 }  // namespace
 
 // Torque at the output, as the effort that makes it.
@@ -69,11 +76,8 @@ void Oracle::followTargets(std::size_t index, const MotorSnapshot& seen) {
   const auto mode = acts ? seen.target.mode : ControlMode::kCoast;
   const bool begins = acts && mode != track.mode;
   const bool by_place = acts && actsByPlace(seen.target);
-  // A spring need not have led its shaft to its place.
-  const bool led =
-      track.by_place && (track.mode != ControlMode::kImpedance || mode == ControlMode::kImpedance);
-  if (by_place && !led) judgeFirstAngle(index, seen);
-  track.by_place = by_place;
+  if (by_place && !isLed(track.leads, seen.target)) judgeFirstAngle(index, seen);
+  track.leads = by_place ? seen.target : Target{};
   const auto turn_ticks = static_cast<std::uint64_t>(motor.config->settings.command_divider);
   const auto ticks = mode != track.mode ? track.change(mode, tick_, turn_ticks) : 1;
   track.places.take(seen.feedback.total_angle_deg);
