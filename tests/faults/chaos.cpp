@@ -352,6 +352,8 @@ Target Chaos::randomTarget(std::size_t motor) {
   const auto modes = robot_->robot().motors()[motor].motor->modes();
   target.mode = any();
   for (int i = 0; i < 3 && !modes.contains(target.mode); ++i) target.mode = any();
+  // A spring is often followed by another one: softer, stiffer, elsewhere.
+  if (robot_->motor(motor).target.mode == kImpedance && choices_.oneIn(2)) target.mode = kImpedance;
   const auto& feedback = robot_->motor(motor).feedback;
   switch (choices_.next(8)) {
     case 0: target.value = choices_.of<double>({1e9, -1e300, kNan, kInfinity, -1e9, 1e300}); break;
