@@ -14,11 +14,14 @@ class WrappedReading {
  public:
   /// `field_rad`: from one end of the position's field to the other. `fastest_rad_s`: see WrappedSpeed.
   WrappedReading(double field_rad, double v_max_rad_s, double fastest_rad_s) noexcept
-      : field_rad_(field_rad), speed_(v_max_rad_s, fastest_rad_s) {}
+      : field_rad_(field_rad), fastest_rad_s_(fastest_rad_s), speed_(v_max_rad_s, fastest_rad_s) {}
 
   double take(double told_rad_s, double position_rad, MonotonicTime received) noexcept {
-    const bool follows = received - received_ <= kLongestGap;
-    way_rad_ += std::remainder(position_rad - position_rad_, field_rad_);
+    const auto gap = received - received_;
+    const double step_rad = std::remainder(position_rad - position_rad_, field_rad_);
+    const double most_rad = fastest_rad_s_ * std::chrono::duration<double>(gap).count() + kSlipRad;
+    const bool follows = gap <= kLongestGap && std::fabs(step_rad) <= most_rad;
+    way_rad_ += step_rad;
     position_rad_ = position_rad;
     received_ = received;
     return speed_.take(told_rad_s, way_rad_, follows, received);
@@ -27,8 +30,11 @@ class WrappedReading {
  private:
   // More, and the drive may have been restarted.
   static constexpr Duration kLongestGap = std::chrono::milliseconds{100};
+  // Beside what the fastest shaft turns: an encoder whose fault begins or ends is elsewhere at once.
+  static constexpr double kSlipRad = 1.0;
 
   double field_rad_;
+  double fastest_rad_s_;
   WrappedSpeed speed_;
   double position_rad_ = 0.0;
   double way_rad_ = 0.0;
