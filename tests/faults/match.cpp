@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -65,6 +66,8 @@ constexpr auto kBackWithin = 8s;
 constexpr double kBackRpm = 30.0;
 constexpr double kBackNm = 5.0;
 constexpr auto kBackOnceIn = 20s;
+// Half of the pair's max_difference_deg.
+constexpr double kTogetherDeg = 5.0;
 // Share of the push that a motor withstands; and a spring that it cannot bend far.
 constexpr double kHelpShare = 0.1;
 constexpr float kStiffness = 20.0F;
@@ -306,9 +309,30 @@ void Match::reference() {
     if (config_.buses[player.bus].motors[player.drive].traits().absolute) continue;
     for (const auto one : both) lost.set(one);
   }
-  if (lost.none()) return;
-  note("reference set");
-  order(Operation::kZero, lost);
+  if (lost.any()) {
+    note("reference set");
+    order(Operation::kZero, lost);
+  }
+  bringTogether();
+}
+
+// Nothing couples the shafts of the lift here: a shove while it rests may lead them apart, and rc10d rightly
+// asks for a person (modules.md).
+void Match::bringTogether() {
+  MotorSet pair;
+  double low_deg = std::numeric_limits<double>::infinity();
+  double high_deg = -low_deg;
+  for (std::size_t i = 0; i < players_.size(); ++i) {
+    if (oneThing(i).size() == 1) continue;
+    const auto& motor = robot_.snapshot().motors[players_[i].motor];
+    if (motor.status != MotorStatus::kReady || !motor.feedback.zeroed) return;
+    pair.set(players_[i].motor);
+    low_deg = std::min(low_deg, motor.feedback.total_angle_deg);
+    high_deg = std::max(high_deg, motor.feedback.total_angle_deg);
+  }
+  if (!(high_deg - low_deg > kTogetherDeg)) return;
+  note("brought together");
+  order(Operation::kZero, pair);
 }
 
 // A hand has led the shaft out of its travel while its plug was out: rc10d rightly asks for a person

@@ -92,6 +92,7 @@ class Match {
   void operate();
   void order(Operation operation, MotorSet motors = {});
   void reference();
+  void bringTogether();
   void turnBack(Player& player);
   void judge();
   void nuisance(const std::string& what);
