@@ -220,7 +220,7 @@ class Feeder : public Module_Base {
   long jams_ = 0;
   MonotonicTime reverse_until_{};
   WatchedTime still_;  ///< Since it moved as it is told.
-  WatchedTime freed_;  ///< Of feeding since the last jam.
+  WatchedTime freed_;  ///< Time of feeding since the last jam.
 };
 
 class FeederType : public ModuleType {

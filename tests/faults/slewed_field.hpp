@@ -112,7 +112,7 @@ struct TargetTrack {
   double effort_before = 0.0;            ///< In its last frame, of a spring its sum,
   double value_before = 0.0;             ///< and as the snapshot told it.
   double speed_before = 0.0;
-  Target leads;             ///< Of the last tick, where it acted by a place.
+  Target leads;             ///< Target of the last tick, where it acted by a place.
   bool turn_known = false;  ///< Its angle has a reference.
   double first_deg = 0.0;   ///< Where its angle began, from where it went on.
   double place_deg = std::numeric_limits<double>::quiet_NaN();  ///< Where it was last,
