@@ -31,7 +31,7 @@ constexpr double kRestShare = 0.02;
 constexpr double kLeadSeconds = 0.1;
 constexpr double kLeadTolerances = 10.0;
 // A motor that is waited for comes nearer by a tolerance within this time, or is blocked.
-constexpr double kBlockedS = 0.2;
+constexpr double kBlockedSeconds = 0.2;
 // A target beyond the limits is reported again after this time without one.
 constexpr Duration kBeyondAgain = std::chrono::seconds{1};
 constexpr std::array<std::string_view, 3> kHomings{"none", "stop", "switch"};
@@ -254,7 +254,7 @@ class Joint : public Module_Base {
         lead_deg_(leadOf(own)),
         tolerance_deg_(own.number("tolerance_deg")),
         settle_s_(static_cast<double>(own.integer("settle_ms")) * 1e-3),
-        blocked_s_(std::max(settle_s_, kBlockedS)),
+        blocked_s_(std::max(settle_s_, kBlockedSeconds)),
         homes_(own.text("homing") != "none"),
         home_angle_deg_(own.number("home_angle_deg")),
         holds_(own.text("on_silence") == "hold"),
@@ -517,7 +517,7 @@ class Joint : public Module_Base {
   bool zero_asked_ = false;
   double target_deg_ = 0.0;
   std::optional<MonotonicTime> beyond_;  ///< Last target that was out of reach.
-  WatchedTime arrived_;                  ///< When the reference came to rest at the target, or the
+  WatchedTime arrived_;                  ///< Since the reference came to rest at the target, or the
   double nearest_deg_ = 0.0;             ///< motor nearer to it than so.
   bool waited_ = false;                  ///< The reference waits, or has not gone on far since.
   double waited_s_ = 0.0;     ///< Time of waiting while the motor came no nearer than closest_deg_.
