@@ -68,7 +68,9 @@ struct BusConfig {
   double data_sample_point = 0.0;
   bool manage_link = false;  ///< rc10d sets the bit rate and takes the interface down and up.
   ForeignLimit foreign{};
-  std::uint64_t sim_seed = 1;  ///< Simulated buses and rc10-sim.
+  Duration stalled_after{
+      std::chrono::milliseconds{5}};  ///< Without an echo of its own frames. SocketCAN only.
+  std::uint64_t sim_seed = 1;         ///< Simulated buses and rc10-sim.
   std::vector<MotorConfig> motors;
 
   [[nodiscard]] CanLinkSettings linkSettings() const noexcept {

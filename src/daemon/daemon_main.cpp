@@ -12,9 +12,11 @@
 #include "config/report/schema.hpp"
 #include "config/report/template.hpp"
 #include "daemon/daemon.hpp"
+#include "daemon/interfaces/interface_wait.hpp"
 #include "daemon/log.hpp"
 #include "daemon/refusal.hpp"
 #include "daemon/rt_process.hpp"
+#include "daemon/service_notify.hpp"
 #include "daemon/signal_inbox.hpp"
 #include "rc10_version.hpp"
 
@@ -43,6 +45,20 @@ Loaded load(const std::string& file) {
   return loaded;
 }
 
+/// False: a signal has asked to stop.
+bool waitAsService(const RobotConfig& config, SignalInbox& signals, spdlog::logger& log) {
+  const InterfaceWait wait{config};
+  if (!runByService() || wait.missing().empty()) return true;
+  log.info("CAN interface '{}' is not there yet: waiting for it", wait.missing());
+  for (auto end = InterfaceWait::End::kSignal; end == InterfaceWait::End::kSignal;) {
+    end = wait.run(signals.descriptor(), InterfaceWait::kLongest);
+    for (int signal = signals.take(); signal != 0; signal = signals.take()) {
+      if (meaningOf(signal) == SignalMeaning::kStop) return false;
+    }
+  }
+  return true;
+}
+
 int run(RobotConfig config, const std::string& source) {
   const std::string file = config.file;
   const std::string robot = config.robot;
@@ -50,6 +66,7 @@ int run(RobotConfig config, const std::string& source) {
   const auto log = makeLog();  // while /proc is open to it
   // A debugger and a core file need what this forbids.
   if (config.guard != GuardPolicy::kOff) forbidDumps();
+  if (!waitAsService(config, signals, *log)) return kOk;
   Daemon daemon(std::move(config), log);
   if (const auto started = daemon.start(); !started) {
     std::cerr << "rc10d: " << started.error().message << '\n';

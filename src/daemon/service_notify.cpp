@@ -11,6 +11,8 @@
 
 namespace rc10 {
 
+bool runByService() noexcept { return std::getenv("NOTIFY_SOCKET") != nullptr; }
+
 void notifyService(std::string_view state) noexcept {
   const char* path = std::getenv("NOTIFY_SOCKET");
   sockaddr_un address{};

@@ -4,6 +4,9 @@
 
 namespace rc10 {
 
+/// Whether systemd started this process, as a service that tells when it is ready.
+[[nodiscard]] bool runByService() noexcept;
+
 /// Tells systemd about the service: "READY=1", "WATCHDOG=1", "STOPPING=1" (sd_notify(3)). Does nothing
 /// when not run by systemd, and never blocks. Not for real-time threads.
 ///

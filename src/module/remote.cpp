@@ -12,6 +12,7 @@
 #include "app/watched_time.hpp"
 #include "module/remote_channels.hpp"
 #include "module/serial_keys.hpp"
+#include "module/steady_channels.hpp"
 
 namespace rc10 {
 namespace {
@@ -142,6 +143,12 @@ struct Constant {
   SignalPlace place{};
 };
 
+[[nodiscard]] std::vector<double> tolerancesOf(const RemoteChannels& channels) {
+  std::vector<double> tolerances(channels.names().size());
+  for (std::size_t i = 0; i < tolerances.size(); ++i) tolerances[i] = channels.tolerance(i);
+  return tolerances;
+}
+
 class Remote : public Module_Base {
  public:
   Remote(const OwnValues& own, std::unique_ptr<RemoteChannels> channels, std::vector<Stick> sticks,
@@ -154,7 +161,8 @@ class Remote : public Module_Base {
         arm_above_(own.number("arm_above")),
         sticks_(std::move(sticks)),
         channels_(std::move(channels)),
-        values_(channels_->names().size(), 0.0),
+        newest_(channels_->names().size(), kNoSignal),
+        steady_(tolerancesOf(*channels_)),
         was_active_(motor_count, false),
         some_(motor_count) {
     for (const auto& row : own.rows("constants"))
@@ -182,11 +190,11 @@ class Remote : public Module_Base {
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const Duration age = channels_->age(tick.now);
     const bool heard = age < lost_ && !channels_->saysLost();
-    if (heard) channels_->read(values_);
+    if (heard) takeFrame(tick.now - age);
     watchLink(heard, tick, robot);
     if (heard) {
       robot.hearClient(tick.now - age);
-      watchArm(tick.now - age, tick, robot);
+      watchArm(tick, robot);
     }
     // An e-stop or a disable ends what the switch has asked for; the end of an e-stop enables nothing.
     const bool disabled = std::exchange(disables_, robot.disables()) != robot.disables();
@@ -237,27 +245,34 @@ class Remote : public Module_Base {
     robot.askAll(RobotRequest::kDisableUnasked);
   }
 
-  // Neither protocol has a checksum, and parity lets two wrong bits pass: of two frames in a row both are
-  // right. After a gap it is read anew; a single frame that the receiver lost is none.
-  [[nodiscard]] std::optional<bool> switchUp(std::size_t channel, MonotonicTime received) noexcept {
-    if (received == judged_) return switch_up_;
-    if (received - judged_ >= lost_) last_up_ = switch_up_ = std::nullopt;
-    judged_ = received;
-    const bool up = values_[channel] > arm_above_;
+  // Neither protocol has a checksum, and parity lets two wrong bits pass. After a gap all is read anew; a
+  // single frame that the receiver lost is none.
+  void takeFrame(MonotonicTime received) noexcept {
+    if (received == last_frame_) return;
+    if (received - last_frame_ >= lost_) {
+      steady_.restart();
+      last_up_ = switch_up_ = std::nullopt;
+    }
+    last_frame_ = received;
+    channels_->read(newest_);
+    steady_.take(newest_);
+    if (arm_channel_) takeSwitch(newest_[*arm_channel_]);
+  }
+
+  // Of two frames in a row both are right; the first that shows it down is seen as well.
+  void takeSwitch(double value) noexcept {
+    const bool up = value > arm_above_;
     if (last_up_ == up) {
       switch_up_ = up;
-      switch_ = values_[channel];
+      switch_ = value;
     }
     last_up_ = up;
-    return switch_up_;
   }
 
   // Only a switch that was seen down can go up: one that is up when the robot starts enables nothing.
-  void watchArm(MonotonicTime received, const Tick& tick, ModuleRobot& robot) noexcept {
-    if (!arm_channel_) return;
-    const auto up = switchUp(*arm_channel_, received);
-    if (!up) return;
-    if (!*up) {
+  void watchArm(const Tick& tick, ModuleRobot& robot) noexcept {
+    if (!switch_up_) return;
+    if (!*switch_up_) {
       // Motors that others enabled, too. A switch that is down after a gap went down within it.
       if (std::exchange(seen_up_, false)) disableWhatIsOn(robot);
       armed_ = false;
@@ -293,7 +308,10 @@ class Remote : public Module_Base {
   }
 
   void command(ModuleRobot& robot) const noexcept {
-    for (const auto& stick : sticks_) robot.send(stick.place, stick.value(values_[stick.channel]));
+    for (const auto& stick : sticks_) {
+      const double deflection = steady_[stick.channel];
+      if (std::isfinite(deflection)) robot.send(stick.place, stick.value(deflection));
+    }
     for (const auto& constant : constants_) robot.send(constant.place, constant.value);
   }
 
@@ -301,8 +319,8 @@ class Remote : public Module_Base {
     setOutput(kConnected, heard ? 1.0 : 0.0);
     setOutput(kArmed, armed_ ? 1.0 : 0.0);
     setAge(kAgeMs, age);
-    for (std::size_t i = 0; i < values_.size(); ++i)
-      setOutput(kFirstChannel + i, heard ? values_[i] : kNoSignal);
+    for (std::size_t i = 0; i < newest_.size(); ++i)
+      setOutput(kFirstChannel + i, heard ? steady_[i] : kNoSignal);
     // A switch shown down counts as down: moving it up then arms.
     if (arm_channel_ && heard) setOutput(kFirstChannel + *arm_channel_, switch_up_ ? switch_ : kNoSignal);
   }
@@ -315,14 +333,15 @@ class Remote : public Module_Base {
   std::vector<Stick> sticks_;
   std::vector<Constant> constants_;
   std::unique_ptr<RemoteChannels> channels_;
-  std::vector<double> values_;
+  std::vector<double> newest_;     ///< As the last frame has them.
+  SteadyChannels steady_;          ///< As they are believed.
   std::vector<bool> was_active_;   ///< Motors that were ACTIVE since the switch went up.
   std::vector<std::size_t> some_;  ///< Room for the motors of one request.
 
   std::optional<bool> last_up_;    ///< The switch in the last frame.
   std::optional<bool> switch_up_;  ///< The switch as two frames in a row had it.
   double switch_ = kNoSignal;      ///< Its channel when they had it.
-  MonotonicTime judged_{};         ///< When the last frame came.
+  MonotonicTime last_frame_{};     ///< When it came.
 
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;

@@ -8,6 +8,11 @@
 namespace rc10 {
 namespace {
 
+// The default deadband: one wrong frame does not make a stick of one that is released.
+constexpr double kStickTolerance = 0.05;
+// Counts of a frame: a quiet hand moves by fewer.
+constexpr double kMouseTolerance = 50.0;
+
 template <typename Protocol>
 class ChannelsOf : public RemoteChannels {
  public:
@@ -51,6 +56,14 @@ class DbusChannels final : public ChannelsOf<DbusProtocol> {
   // The protocol has no flag for it: the receiver falls silent, or repeats its last frame.
   [[nodiscard]] bool saysLost() const noexcept override { return false; }
 
+  [[nodiscard]] double tolerance(std::size_t channel) const noexcept override {
+    constexpr std::size_t kSticks = 5;  // with the wheel
+    constexpr std::size_t kMouse = 7;
+    constexpr std::size_t kMouseEnd = 10;
+    if (channel < kSticks) return kStickTolerance;
+    return channel >= kMouse && channel < kMouseEnd ? kMouseTolerance : 0.0;
+  }
+
   void read(std::span<double> values) const noexcept override {
     const auto& in = input();
     const auto stick = [](std::int16_t raw) { return static_cast<double>(raw) / Dr16Input::kFullDeflection; };
@@ -88,6 +101,10 @@ class SbusChannels final : public ChannelsOf<SbusProtocol> {
     return {.baud = 100'000, .data_bits = 8, .parity = Parity::kEven, .stop_bits = 2};
   }
   [[nodiscard]] bool saysLost() const noexcept override { return input().failsafe || input().frame_lost; }
+
+  [[nodiscard]] double tolerance(std::size_t channel) const noexcept override {
+    return channel < SbusInput::kChannels ? kStickTolerance : 0.0;
+  }
 
   void read(std::span<double> values) const noexcept override {
     const auto& in = input();

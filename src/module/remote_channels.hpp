@@ -34,6 +34,8 @@ class RemoteChannels {
   [[nodiscard]] virtual Duration age(MonotonicTime now) const noexcept = 0;
   /// The receiver says that it has lost its remote.
   [[nodiscard]] virtual bool saysLost() const noexcept = 0;
+  /// Change of a channel that one frame alone may show, in the unit of read(); 0: none, of a switch or a key.
+  [[nodiscard]] virtual double tolerance(std::size_t channel) const noexcept = 0;
   /// The newest value of each channel, in the order of names().
   virtual void read(std::span<double> values) const noexcept = 0;
 };

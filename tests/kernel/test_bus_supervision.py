@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import json
+import signal
 import time
 from pathlib import Path
 
 import pytest
-from guestlib import Candump, Frame, Proc, link_down, link_up, netem, netem_clear, run
+from guestlib import (
+    Candump,
+    Frame,
+    Proc,
+    link_add,
+    link_delete,
+    link_down,
+    link_up,
+    netem,
+    netem_clear,
+    run,
+)
 from rig import (
     BIN,
     C6XX_COMMAND,
@@ -67,6 +79,29 @@ def test_an_interface_that_is_down_at_the_start_is_told_too() -> None:
         link_up("vcan0")
         with fakes():
             process.wait_line("bus active", 5.0)
+
+
+def test_a_service_waits_for_an_interface_that_comes_late() -> None:
+    service = {"NOTIFY_SOCKET": "/tmp/no_systemd"}
+    link_delete("vcan0")
+    with Proc(BIN / "rc10d", "-c", CONFIG, env=service) as process:
+        process.wait_line("CAN interface 'vcan0' is not there yet: waiting for it", 5.0)
+        link_add("vcan0")
+        process.wait_line("robot '.*' runs", 10.0)
+
+
+def test_a_service_whose_interface_does_not_come_says_so_and_stops_when_told() -> None:
+    service = {"NOTIFY_SOCKET": "/tmp/no_systemd"}
+    link_delete("vcan0")
+    try:
+        with Proc(BIN / "rc10d", "-c", CONFIG, env=service) as process:
+            process.wait_line("CAN interface 'vcan0': No such device", 15.0)
+        with Proc(BIN / "rc10d", "-c", CONFIG, env=service) as process:
+            process.wait_line("waiting for it", 5.0)
+            process.signal(signal.SIGTERM)
+            assert process.wait(5.0) == 0
+    finally:
+        link_add("vcan0")
 
 
 @pytest.mark.parametrize("reader", ["tick", "thread"])

@@ -231,6 +231,64 @@ TEST_F(Remote, OneDamagedFrameIsNoMoveOfTheSwitch) {
   EXPECT_EQ(armed(), 1.0);
 }
 
+TEST_F(Remote, OneDamagedFrameStartsNothing) {
+  struct Damage {
+    const char* channel;
+    void (*of)(Dr16Input&);
+  };
+  for (const auto& [channel, of] :
+       {Damage{"key_e", [](Dr16Input& frame) { frame.keys = 0x00C0; }},
+        Damage{"mouse_left", [](Dr16Input& frame) { frame.mouse_left = true; }},
+        Damage{"right_switch", [](Dr16Input& frame) { frame.right_switch = Dr16Input::Switch::kUp; }},
+        Damage{"right_y", [](Dr16Input& frame) { frame.right_vertical = 660; }},
+        Damage{"wheel", [](Dr16Input& frame) { frame.wheel = -660; }}}) {
+    SCOPED_TRACE(channel);
+    dbus_ = {};
+    dbus_.right_switch = Dr16Input::Switch::kMiddle;
+    build(settings("dbus", channel, ""));
+    run(100);
+    const auto good = dbus_;
+    of(dbus_);
+    const auto damaged = dbus_;
+    for (int i = 0; i < 56; ++i) {
+      if (i == 14) dbus_ = good;
+      run(1);
+      ASSERT_EQ((robot_.sent().at({0, 0})), 0.0);
+      ASSERT_NEAR(shown(channel), 0.0, 0.05);
+    }
+    dbus_ = damaged;
+    run(28);
+    EXPECT_NE((robot_.sent().at({0, 0})), 0.0) << "a second frame agrees";
+  }
+}
+
+TEST_F(Remote, NoSingleFrameCommandsAfterAGap) {
+  build(settings("dbus", "right_y", ""));
+  run(100);
+  run(200, false);
+  dbus_.right_vertical = 660;
+  run(14);
+  dbus_.right_vertical = 0;
+  for (int i = 0; i < 42; ++i) {
+    run(1);
+    const auto sent = robot_.sent().find({0, 0});
+    if (sent != robot_.sent().end()) {
+      ASSERT_EQ(sent->second, 0.0);
+    }
+  }
+  EXPECT_TRUE(robot_.sent().contains({0, 0}));
+}
+
+TEST_F(Remote, AStickIsFollowedWithoutDelayAsLongAsItIsMovedByHand) {
+  build(settings("dbus", "right_y", ""));
+  run(100);
+  for (int deflection = 0; deflection <= 660; deflection += 30) {
+    dbus_.right_vertical = static_cast<std::int16_t>(deflection);
+    run(14);
+    EXPECT_NEAR(shown("right_y"), deflection / 660.0, 1e-6);
+  }
+}
+
 TEST_F(Remote, TheEndOfAnEstopEnablesNothing) {
   build();
   for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;

@@ -144,6 +144,33 @@ TEST(CubemarsTurns, ADriveOnAnotherTurnOfItsFieldIsStoppedBeforeItGoesFar) {
   }
 }
 
+// Its spring pulls against a load for some milliseconds longer than it is told to.
+TEST(CubemarsTurns, AReleasedSpringWhoseAnswersComeLateIsNoOtherTurn) {
+  for (const int late_ms : {0, 5, 7, 9}) {
+    for (const float sign : {1.0F, -1.0F}) {
+      SCOPED_TRACE(late_ms);
+      auto rig = rigOf(settingsOf({"AK80-9", "mit"}));
+      rig.delay(milliseconds{late_ms});
+      rig.comeOnline();
+      ASSERT_TRUE(rig.enable());
+      rig.stall(true);
+      const auto at_deg = rig.motor().feedback().total_angle_deg;
+      const Target pulls{.mode = ControlMode::kImpedance,
+                         .value = at_deg + 40.0 * static_cast<double>(sign),
+                         .stiffness_nm_per_rad = 60.0F,
+                         .damping_nms_per_rad = 1.0F};
+      Target rests = pulls;
+      rests.value = at_deg;
+      for (int i = 0; i < 20; ++i) {
+        rig.command(i % 2 == 0 ? pulls : rests);
+        rig.run(milliseconds{30 + i},
+                [&] { ASSERT_EQ(rig.motor().complaint().fault, FaultCode::kNone) << i; });
+        ASSERT_EQ(rig.motor().feedback().torque_nm * sign > 11.0F, i % 2 == 0);
+      }
+    }
+  }
+}
+
 // At the end of such a step the drive gives far less than it is told: its back-EMF takes it away.
 TEST(CubemarsTurns, ALargeStepAtFullSpeedIsNoOtherTurn) {
   for (const auto* model : {"AK80-9", "AK80-64", "AK10-9", "AK60-6", "AK70-10", "AK80-8"}) {

@@ -53,6 +53,8 @@ void BusBuilder::readPlain(const Settings& settings, BusConfig& bus) {
   settings.read("foreign_frames", bus.foreign.frames);
   if (const auto within_ms = settings.number("foreign_ms"))
     bus.foreign.within = std::chrono::milliseconds{static_cast<int>(*within_ms)};
+  if (const auto stalled_ms = settings.number("stalled_ms"))
+    bus.stalled_after = std::chrono::milliseconds{static_cast<int>(*stalled_ms)};
   settings.section("sim").read("seed", bus.sim_seed);
 }
 
@@ -79,6 +81,10 @@ void BusBuilder::checkInterface(const Settings& settings, const BusConfig& bus, 
       problems_.error(interface->place(), interface->path, "a simulated bus has no interface; remove it");
     if (const auto manage = settings.find("manage_link"); manage && bus.manage_link) {
       problems_.error(manage->place(), manage->path, "a simulated bus has no interface to manage; remove it");
+    }
+    if (const auto stalled = settings.find("stalled_ms");
+        stalled && bus.stalled_after != BusConfig{}.stalled_after) {
+      problems_.error(stalled->place(), stalled->path, "a simulated bus does not stall; remove it");
     }
   } else if (interface) {
     interfaces_.add(*interface, problems_);

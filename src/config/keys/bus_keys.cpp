@@ -83,6 +83,14 @@ constexpr std::array kBusKeys{
         .range = {.min = 1, .max = 10'000},
         .default_text = "100",
         .about = "See foreign_frames."},
+    Key{.name = "stalled_ms",
+        .kind = kInteger,
+        .unit = "ms",
+        .range = {.min = 5, .max = 50},
+        .default_text = "5",
+        .about =
+            "For this time, and five ticks, no frame of ours was echoed: the bus is stalled and its motors "
+            "are OFFLINE. More for a USB adapter whose host is late. Not for type: sim."},
     Key{.name = "sim", .kind = kSection, .section = &kBusSim, .about = "How the bus is simulated."},
     Key{.name = "motors",
         .kind = kSectionList,

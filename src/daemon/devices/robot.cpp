@@ -15,6 +15,9 @@
 namespace rc10 {
 namespace {
 
+// A tick, and an echo with it, may be this much early.
+constexpr Duration kTickJitter = std::chrono::microseconds{500};
+
 // One DJI command frame carries four motors; a bus with all of them has five. Other drives have one each,
 // in their turn.
 [[nodiscard]] CanSocketOptions socketOptions(const BusConfig& config) {
@@ -80,8 +83,9 @@ Result<void> Robot::addSocketCan(const BusConfig& config) {
                     .settings = config.linkSettings(),
                     .manage_link = config.manage_link,
                     .foreign = config.foreign});
-  if (auto added = addMotors(config); !added) return added;
   auto& entry = buses_.back();
+  entry.bus->health() = BusHealth{{.stalled_after = config.stalled_after - kTickJitter}};
+  if (auto added = addMotors(config); !added) return added;
   if (entry.bus->packers().empty()) return {};
   auto echo = openEchoSocket(config.interface, entry.watched);
   if (!echo) return tl::unexpected(echo.error());

@@ -26,6 +26,8 @@ constexpr double kMitDampShare = 0.25;  // of the damping of brake
 // Share of the torque of a spring one turn of the field away (at most the whole range) that counts as a pull
 // the other way: delay and resolution of the report hide the rest.
 constexpr double kSpringMismatch = 0.6;
+// An answer that came by a USB adapter may show a law that is this old.
+constexpr Duration kLongestAnswer = std::chrono::milliseconds{10};
 // Samples in a row: a stiff damping pulls the other way for one sample alone.
 constexpr int kSamplesAgainst = 4;
 // Detail of kDriveSetting: the drive counts its turns otherwise.
@@ -103,7 +105,7 @@ FrameVerdict CubemarsMit::takeMitReport(const CanFrame& frame) noexcept {
   cut_off_speed_.add(drive_rad, follows, frame.received);
   samples_at_speed_end_ = report->speed_at_end ? std::min(samples_at_speed_end_ + 1, kSamplesAtEnd) : 0;
   feedback_.velocity_rpm = static_cast<float>(toOutput(velocity_rad_s_ / kRadPerSPerRpm));
-  watchSpring(*report);
+  watchSpring(*report, frame.received);
   takePosition(frame.received, drive_rad / kRadPerDeg);
   samples_at_end_ = report->at_end ? std::min(samples_at_end_ + 1, kSamplesAtEnd) : 0;
   feedback_.angle_at_end = samples_at_end_ == kSamplesAtEnd;
@@ -136,23 +138,26 @@ double CubemarsMit::unwrapped(double position_rad, bool anew) noexcept {
 // The drive reports its position modulo the field, but its spring acts on the whole position. The first
 // sample does not tell on which turn the drive is; on another turn than the field's the spring pulls the
 // other way with full torque.
-void CubemarsMit::watchSpring(const cubemars::MitReport& report) noexcept {
+void CubemarsMit::watchSpring(const cubemars::MitReport& report, MonotonicTime received) noexcept {
   const double most_nm = own().ranges.torque_nm;
-  // A report between two frames may still show the law of the one before.
-  std::array<double, 2> expected_nm{};
-  for (std::size_t i = 0; i < sent_.size(); ++i) {
-    const double sum_nm = torqueNm(sent_[i], measured());
-    expected_nm[i] = std::clamp(sum_nm, -most_nm, most_nm);
-  }
-  const double stiffness = sent_[0].stiffness_nm_per_rad;
-  const bool springs = obeying() && stiffness > 0.0;
+  const double stiffness = sent_.last().stiffness_nm_per_rad;
   const double turn_nm = stiffness * cubemars::positionWrapRad(own().ranges);
   const double apart_nm = kSpringMismatch * std::min(most_nm, turn_nm);
   // Too little torque is not torque the other way: near its no-load speed a drive gives less than it is told.
-  const auto [low_nm, high_nm] = std::minmax({expected_nm[0], expected_nm[1], 0.0});
+  double low_nm = 0.0;
+  double high_nm = 0.0;
+  const bool springs = obeying() && stiffness > 0.0;
+  const bool suspect = springs && std::fabs(report.torque_nm) > apart_nm;
+  if (suspect) {
+    sent_.forEach(received - kLongestAnswer, [&](const SpringLaw& law) {
+      const double told_nm = std::clamp(torqueNm(law, measured()), -most_nm, most_nm);
+      low_nm = std::min(low_nm, told_nm);
+      high_nm = std::max(high_nm, told_nm);
+    });
+  }
   int against = 0;
-  if (springs && report.torque_nm > high_nm + apart_nm) against = 1;
-  if (springs && report.torque_nm < low_nm - apart_nm) against = -1;
+  if (suspect && report.torque_nm > high_nm + apart_nm) against = 1;
+  if (suspect && report.torque_nm < low_nm - apart_nm) against = -1;
   const bool goes_on = against * samples_against_ > 0;
   samples_against_ =
       std::clamp(goes_on ? samples_against_ + against : against, -kSamplesAgainst, kSamplesAgainst);
@@ -321,7 +326,7 @@ std::size_t CubemarsMit::packCommand(const Tick& tick, std::span<CanFrame> out) 
   }
   samples_before_rest_.reset();
   out[0] = commandFrame(enabling() ? SpringLaw{} : command_);
-  sent_ = {enabling() ? SpringLaw{} : command_, sent_[0]};
+  sent_.add(enabling() ? SpringLaw{} : command_, tick.now);
   return 1;
 }
 

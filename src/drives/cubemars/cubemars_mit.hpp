@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "drives/cubemars/cubemars_motor.hpp"
+#include "drives/cubemars/sent_laws.hpp"
 #include "motor/enable_sequence.hpp"
 #include "motor/lead_bound.hpp"
 #include "motor/position_reach.hpp"
@@ -52,7 +53,7 @@ class CubemarsMit : public CubeMars_Motor {
   [[nodiscard]] bool inRange() const noexcept { return turns_ == 0 && !turns_unknown_ && !positionCutOff(); }
   /// Bound of targets, as a position of the drive, with this stiffness at its output.
   [[nodiscard]] double springReach(double stiffness_nm_per_rad) const noexcept;
-  void watchSpring(const cubemars::MitReport& report) noexcept;
+  void watchSpring(const cubemars::MitReport& report, MonotonicTime received) noexcept;
   [[nodiscard]] bool pullsOtherwise() const noexcept;
   [[nodiscard]] bool limited() const noexcept;
   /// A turn of the field that is not known makes every angle wrong, but a wheel without limits may count
@@ -95,8 +96,8 @@ class CubemarsMit : public CubeMars_Motor {
   SpringReach reach_;
   LeadBound lead_;
 
-  SpringLaw command_{};              ///< Result of update().
-  std::array<SpringLaw, 2> sent_{};  ///< The last, and the one before.
+  SpringLaw command_{};  ///< Result of update().
+  SentLaws sent_;
   int samples_against_ = 0;  ///< In a row, of a spring that pulls the other way; signed by its torque.
   EnableSequence<Step> enabling_;
   bool enter_now_ = false;

@@ -59,6 +59,19 @@ TEST(BusRules, ManagesTheLinkOnlyWhereThereIsOneAndOnlyIfAsked) {
           "hero.yaml:3:45: buses[0].manage_link: a simulated bus has no interface to manage; remove it"));
 }
 
+TEST(BusRules, ABusIsStalledAfterTheTimeThatItsAdapterNeeds) {
+  const auto after = [](const std::string& keys) {
+    return parseRobotConfig(robotWithBuses("name: chassis, interface: can0, " + keys + kMotors), "")
+        .config.value()
+        .buses[0]
+        .stalled_after;
+  };
+  EXPECT_EQ(after(""), std::chrono::milliseconds{5});
+  EXPECT_EQ(after("stalled_ms: 20, "), std::chrono::milliseconds{20});
+  EXPECT_THAT(errorsOf(robotWithBuses("name: chassis, type: sim, stalled_ms: 20, " + kMotors)),
+              ElementsAre("hero.yaml:3:44: buses[0].stalled_ms: a simulated bus does not stall; remove it"));
+}
+
 TEST(BusRules, AnFdBusMayBeManagedAndHasSamplePoints) {
   const std::string fd =
       "name: chassis, interface: can0, manage_link: true, sample_point: 0.8, "
