@@ -171,11 +171,26 @@ TEST_P(HeldLoadOfALoop, IsHeldAfterAPauseWhereverItHadNoReasonToLeaveItsPlace) {
 TEST_P(HeldLoadOfALoop, IsNotHeldAfterAPauseWhereItsTargetLedElsewhere) {
   const double place_deg = heldDeg();
   robot.simBus().stall(kMotor, true);
-  EXPECT_EQ(orderedAfter({.mode = ControlMode::kVelocity, .value = 30.0}, 2000), FrameKind::kIdle);
+  for (const double rpm : {30.0, -30.0}) {
+    EXPECT_EQ(orderedAfter({.mode = ControlMode::kVelocity, .value = rpm}, 2000), FrameKind::kIdle);
+  }
   EXPECT_EQ(orderedAfter({.mode = ControlMode::kTotalAngle, .value = place_deg + 30.0}, 2000),
             FrameKind::kIdle);
   const double beside_deg = wrapDegrees(static_cast<double>(robot.motor(kMotor).feedback.angle_deg) + 30.0);
   EXPECT_EQ(orderedAfter({.mode = ControlMode::kAngle, .value = beside_deg}, 2000), FrameKind::kIdle);
+}
+
+TEST(HeldAfterAPause, IsNoMotorThatIsStillBeingBraked) {
+  auto config = configOf(kSubjects[0], "");
+  config.buses[0].motors[0].fallback.on_timeout = FallbackAction::kHold;
+  VirtualRobot robot{config};
+  robot.run(5);
+  robot.order(Operation::kEnable);
+  robot.hold(0, {.mode = ControlMode::kVelocity, .value = 120.0}, 1500);
+  robot.hold(0, {.mode = ControlMode::kBrake}, 1);
+  robot.freezeSimulation(true);
+  robot.tick(60);
+  EXPECT_EQ(robot.robot().motors()[0].motor->ordered(), FrameKind::kIdle);
 }
 
 TEST(HeldAfterAPause, IsAMotorThatAFallbackHasBraked) {

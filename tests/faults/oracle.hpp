@@ -158,12 +158,13 @@ class Oracle {
         false;  ///< Its feedback was not fresh then: the speed is that of the next sample.
     std::uint64_t acts_since_tick = 0;
     bool ends_at_standstill = false;
-    MonotonicTime fast_at{};    ///< It was seen to turn then.
-    bool stood = false;         ///< For kSettled, by what was seen, since the fallback began,
-    bool of_estop = false;      ///< of the robot.
-    double held_deg = kUnsaid;  ///< Where a hold of a loop of rc10d began.
-    MonotonicTime held_at{};    ///< Its last sample since,
-    double last_deg = 0.0;      ///< and where it was then.
+    MonotonicTime fast_at{};        ///< It was seen to turn then.
+    bool stood = false;             ///< For kSettled, by what was seen, since the fallback began,
+    bool of_estop = false;          ///< of the robot.
+    double held_deg = kUnsaid;      ///< Where a hold of a loop of rc10d began.
+    MonotonicTime held_at{};        ///< Its last sample since,
+    double last_deg = 0.0;          ///< and where it was then.
+    std::uint64_t held_losses = 0;  ///< Of its place, up to then.
     int unheld_ticks = 0;
     bool rests_with_group = false;  ///< Disabled since another member was.
     bool new_sample = false;

@@ -451,7 +451,7 @@ void Oracle::judgeBrake(std::size_t index, Actions actions) {
 }
 
 // And one that holds a shaft which is far from where that began, and comes no nearer. Where a reading leaps,
-// or is missing, its turn may be another one.
+// or is missing, its turn may be another one. A motor that loses its place holds anew where it is then.
 void Oracle::judgeHold(std::size_t index, const MotorSnapshot& seen, Actions actions) {
   auto& motor = motors_[index];
   const bool must_hold = seen.acting == Acting::kHold && actions == only(FallbackAction::kHold) &&
@@ -462,7 +462,9 @@ void Oracle::judgeHold(std::size_t index, const MotorSnapshot& seen, Actions act
   const double rpm = std::fabs(motor.wire->measured().velocity_rpm);
   const bool follows = gap <= motor.config->feedback_timeout / 4 &&
                        way_deg <= 1.0 + 9.0 * rpm * static_cast<double>(seconds(gap));
-  if (!must_hold || !follows) motor.held_deg = kUnsaid;
+  const auto losses = seen.feedback.losses + seen.feedback.jumps;
+  const bool lost = losses != std::exchange(motor.held_losses, losses);
+  if (!must_hold || !follows || lost) motor.held_deg = kUnsaid;
   if (must_hold && std::isnan(motor.held_deg)) {
     motor.held_deg = here_deg + (misplaced_ == index ? 90.0 : 0.0);
     motor.unheld_ticks = 0;

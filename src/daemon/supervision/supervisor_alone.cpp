@@ -14,7 +14,6 @@ MotorSet Supervisor::otherMotorsOn(std::size_t motor) const noexcept {
 // ACTIVE.
 Refusal Supervisor::enableAlone(std::size_t motor, const Tick& tick) noexcept {
   if (otherMotorsOn(motor).any()) return Refusal::kOthersOn;
-  if (const auto refusal = ownRefusal(motor); refusal != Refusal::kNone) return refusal;
   alone_ = motor;
   const auto refusal = enable(motor, {}, tick);
   if (!isOn(axes_[motor].status())) alone_.reset();

@@ -120,11 +120,8 @@ void Supervisor::stopGroup(std::size_t index, GroupStop reason, const Tick& tick
     if (reason == GroupStop::kLost && axes_[motor].holdsDisabled()) axes_[motor].stopHolding(tick);
     transition(motor, event, why, tick);
   }
-  bool returns = reason == GroupStop::kLost && !group.disable_asked &&
-                 group.on_return == GroupConfig::Return::kRearmAtRest;
-  // A motor that stopped for a fault waits for a person.
-  for (const auto motor : group.motors)
-    if (gone.test(motor) && axes_[motor].status() == MotorStatus::kFault) returns = false;
+  const bool returns = reason == GroupStop::kLost && !group.disable_asked &&
+                       group.on_return == GroupConfig::Return::kRearmAtRest;
   if (!returns) group.rearm.reset();
   group.moved = tick.now;
   group.stopped = tick.now;

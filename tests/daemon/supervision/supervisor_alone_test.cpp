@@ -139,34 +139,36 @@ TEST(OneOfAPairThatIsEnabledAlone, IsBrakedByADisableOfBoth) {
   }
 }
 
-TEST_F(EnableAloneTest, AThirdThatIsHeldStopsWithALostMemberOfItsGroup) {
-  auto config = twoWheelsAndYaw();
-  auto& motors = config.buses[0].motors;
-  BusConfig other = config.buses[0];
-  other.name = "other";
-  other.motors = {motors[kRight]};
-  motors.erase(motors.begin() + kRight);
-  motors[0].fallback.on_disable = FallbackAction::kHold;
-  config.buses.push_back(std::move(other));
-  auto group = leftAndRight();
-  group.motors = {0, 1, 2};
-  config.groups.push_back(group);
-  start(std::move(config));
-  constexpr std::size_t kHeld = 0;
-  constexpr std::size_t kTried = 1;
-  constexpr std::size_t kLost = 2;
-  ASSERT_EQ(robot->order(Operation::kEnable).motors[kHeld], Refusal::kNone);
-  robot->run(50);
-  robot->order(Operation::kDisable);
-  robot->run(500);
-  ASSERT_EQ(robot->motor(kHeld).acting, Acting::kHold);
-  ASSERT_EQ(alone(kTried), Refusal::kNone);
-  ASSERT_EQ(robot->motor(kHeld).acting, Acting::kHold);
-  robot->freezeBus(1, true);
-  robot->run(50);
-  EXPECT_EQ(status(kLost), MotorStatus::kOffline);
-  EXPECT_EQ(robot->motor(kHeld).acting, Acting::kNothing);
-  EXPECT_EQ(status(kTried), MotorStatus::kActive);
+TEST_F(EnableAloneTest, AThirdThatIsHeldStopsWithALostMemberOfItsGroupWhateverTheGroupsOrder) {
+  for (const auto& order : {std::vector<std::size_t>{0, 1, 2}, std::vector<std::size_t>{2, 1, 0}}) {
+    auto config = twoWheelsAndYaw();
+    auto& motors = config.buses[0].motors;
+    BusConfig other = config.buses[0];
+    other.name = "other";
+    other.motors = {motors[kRight]};
+    motors.erase(motors.begin() + kRight);
+    motors[0].fallback.on_disable = FallbackAction::kHold;
+    config.buses.push_back(std::move(other));
+    auto group = leftAndRight();
+    group.motors = order;
+    config.groups.push_back(group);
+    start(std::move(config));
+    constexpr std::size_t kHeld = 0;
+    constexpr std::size_t kTried = 1;
+    constexpr std::size_t kLost = 2;
+    ASSERT_EQ(robot->order(Operation::kEnable).motors[kHeld], Refusal::kNone);
+    robot->run(50);
+    robot->order(Operation::kDisable);
+    robot->run(500);
+    ASSERT_EQ(robot->motor(kHeld).acting, Acting::kHold);
+    ASSERT_EQ(alone(kTried), Refusal::kNone);
+    ASSERT_EQ(robot->motor(kHeld).acting, Acting::kHold);
+    robot->freezeBus(1, true);
+    robot->run(50);
+    EXPECT_EQ(status(kLost), MotorStatus::kOffline);
+    EXPECT_EQ(robot->motor(kHeld).acting, Acting::kNothing);
+    EXPECT_EQ(status(kTried), MotorStatus::kActive);
+  }
 }
 
 TEST_F(EnableAloneTest, HasTheRulesOfEnabling) {

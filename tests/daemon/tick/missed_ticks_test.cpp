@@ -90,6 +90,24 @@ TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadATickLaterIsHeard) {
   EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive);
 }
 
+// Each of them, where the drive was heard in time between them.
+TEST_F(MissedTicksTest, FeedbackOfEveryPauseIsHeard) {
+  for (int pause = 0; pause < 3; ++pause) {
+    robot.freezeSimulation(false);
+    robot.run(100);
+    if (pause == 0) {
+      ASSERT_EQ(robot.order(Operation::kEnable).motors[0], Refusal::kNone);
+    }
+    robot.freezeSimulation(true);
+    robot.run(12);
+    const auto frame = makeDjiFeedback(kM3508, 1, {}, robot.now() + 10ms);
+    robot.inboxes()[0].frames.push(&frame, 1);
+    robot.tick(40);
+    robot.run(12);
+    EXPECT_EQ(robot.motor(0).status, MotorStatus::kActive) << pause;
+  }
+}
+
 // The same, read in time: the control of the test above.
 TEST_F(MissedTicksTest, FeedbackOfAPauseThatIsReadAtItsEndIsHeardThoughItIsOld) {
   enableAndSilence();
