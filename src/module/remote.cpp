@@ -259,7 +259,7 @@ class Remote : public Module_Base {
     if (arm_channel_) takeSwitch(newest_[*arm_channel_]);
   }
 
-  // Of two frames in a row both are right; the first that shows it down is seen as well.
+  // Two frames in a row are right; the first that shows it down is seen as well.
   void takeSwitch(double value) noexcept {
     const bool up = value > arm_above_;
     if (last_up_ == up) {

@@ -164,7 +164,7 @@ class Oracle {
     double held_deg = kUnsaid;      ///< Where a hold of a loop of rc10d began.
     MonotonicTime held_at{};        ///< Its last sample since,
     double last_deg = 0.0;          ///< and where it was then.
-    std::uint64_t held_losses = 0;  ///< Of its place, up to then.
+    std::uint64_t held_losses = 0;  ///< Losses of its place, up to then.
     int unheld_ticks = 0;
     bool rests_with_group = false;  ///< Disabled since another member was.
     bool new_sample = false;

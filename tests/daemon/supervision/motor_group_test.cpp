@@ -1,4 +1,4 @@
-// What a group remembers of its members from tick to tick, and forgets.
+// A group remembers what its members do from tick to tick, and forgets it.
 
 #include <algorithm>
 #include <chrono>
