@@ -124,6 +124,23 @@ def test_a_stalled_bus_comes_back_with_rest_and_waits_to_be_enabled(reader: str)
         assert abs(robot.motor("left").velocity_rpm - 100) < 2
 
 
+@pytest.mark.parametrize(("stalled_ms", "stalls"), [(5, True), (20, False)])
+def test_a_bus_whose_echoes_are_late_is_stalled_after_the_time_that_it_has(
+    stalled_ms: int, stalls: bool
+) -> None:
+    config = Path("/tmp/late_echoes.yaml")
+    interface = "    interface: vcan0\n"
+    config.write_text(
+        CONFIG.read_text().replace(interface, f"{interface}    stalled_ms: {stalled_ms}\n")
+    )
+    with enabled_robot(config) as (process, robot):
+        netem("vcan0", "delay 10ms limit 200")
+        drive(robot, 0.5, left=rc10.velocity_rpm(100))
+        assert ("bus stalled" in process.output()) == stalls
+        kept = robot.motor("left").status is rc10.MotorStatus.ACTIVE
+        assert kept != stalls
+
+
 def test_a_stalled_bus_gets_no_frames_but_a_rest_probe() -> None:
     with enabled_robot() as (process, robot), Candump("vcan0") as bus:
         # A frame handed over now arrives, and is echoed, after the test has looked.
