@@ -12,6 +12,7 @@
 #include "config/report/schema.hpp"
 #include "config/report/template.hpp"
 #include "daemon/daemon.hpp"
+#include "daemon/exchange/clock.hpp"
 #include "daemon/interfaces/interface_wait.hpp"
 #include "daemon/log.hpp"
 #include "daemon/refusal.hpp"
@@ -50,9 +51,10 @@ bool waitAsService(const RobotConfig& config, SignalInbox& signals, spdlog::logg
   const InterfaceWait wait{config};
   if (!runByService() || wait.missing().empty()) return true;
   log.info("CAN interface '{}' is not there yet: waiting for it", wait.missing());
-  for (auto end = InterfaceWait::End::kSignal; end == InterfaceWait::End::kSignal;) {
-    end = wait.run(signals.descriptor(), InterfaceWait::kLongest);
+  const MonotonicTime ends = monotonicNow() + InterfaceWait::kLongest;
+  while (wait.run(signals.descriptor(), ends - monotonicNow()) == InterfaceWait::End::kSignal) {
     for (int signal = signals.take(); signal != 0; signal = signals.take()) {
+      log.info("{} while waiting", describeSignal(signal));
       if (meaningOf(signal) == SignalMeaning::kStop) return false;
     }
   }

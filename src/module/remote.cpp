@@ -189,8 +189,9 @@ class Remote : public Module_Base {
 
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const Duration age = channels_->age(tick.now);
-    const bool heard = age < lost_ && !channels_->saysLost();
-    if (heard) takeFrame(tick.now - age);
+    const bool talks = age < lost_ && !channels_->saysLost();
+    if (talks) takeFrame(tick.now - age);
+    const bool heard = talks && steady_.heard();
     watchLink(heard, tick, robot);
     if (heard) {
       robot.hearClient(tick.now - age);
@@ -200,8 +201,8 @@ class Remote : public Module_Base {
     const bool disabled = std::exchange(disables_, robot.disables()) != robot.disables();
     if (disabled || robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
     // After a gap the switch counts from the second frame. It may be going down: it counts as up until two
-    // frames say so, and acts no more from the first on.
-    const bool up = heard && armed_ && switch_up_.value_or(false) && last_up_.value_or(false);
+    // frames say so, and acts no more from the first on until two show it up again.
+    const bool up = heard && armed_ && switch_agrees_ && switch_up_.value_or(false);
     if (up) arm(tick, robot);
     if (up || (heard && !arm_channel_)) command(robot);
     show(heard, age);
@@ -252,6 +253,7 @@ class Remote : public Module_Base {
     if (received - last_frame_ >= lost_) {
       steady_.restart();
       last_up_ = switch_up_ = std::nullopt;
+      switch_agrees_ = false;
     }
     last_frame_ = received;
     channels_->read(newest_);
@@ -262,7 +264,8 @@ class Remote : public Module_Base {
   // Two frames in a row are right; the first that shows it down is seen as well.
   void takeSwitch(double value) noexcept {
     const bool up = value > arm_above_;
-    if (last_up_ == up) {
+    switch_agrees_ = last_up_ == up;
+    if (switch_agrees_) {
       switch_up_ = up;
       switch_ = value;
     }
@@ -307,11 +310,10 @@ class Remote : public Module_Base {
     if (ready > 0) robot.ask(RobotRequest::kEnable, std::span{some_}.first(ready));
   }
 
+  // All or nothing: an input that is missing for a frame would fall and rise again.
   void command(ModuleRobot& robot) const noexcept {
-    for (const auto& stick : sticks_) {
-      const double deflection = steady_[stick.channel];
-      if (std::isfinite(deflection)) robot.send(stick.place, stick.value(deflection));
-    }
+    if (!steady_.settled()) return;
+    for (const auto& stick : sticks_) robot.send(stick.place, stick.value(steady_[stick.channel]));
     for (const auto& constant : constants_) robot.send(constant.place, constant.value);
   }
 
@@ -340,6 +342,7 @@ class Remote : public Module_Base {
 
   std::optional<bool> last_up_;    ///< The switch in the last frame.
   std::optional<bool> switch_up_;  ///< The switch as two frames in a row had it.
+  bool switch_agrees_ = false;     ///< The last two frames agree on it.
   double switch_ = kNoSignal;      ///< Its channel when they had it.
   MonotonicTime last_frame_{};     ///< When it came.
 

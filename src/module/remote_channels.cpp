@@ -10,8 +10,8 @@ namespace {
 
 // The default deadband: one wrong frame does not make a stick of one that is released.
 constexpr double kStickTolerance = 0.05;
-// Counts of a frame: a quiet hand moves by fewer.
-constexpr double kMouseTolerance = 50.0;
+// Counts of a frame: a hand that aims moves by fewer.
+constexpr double kMouseTolerance = 20.0;
 
 template <typename Protocol>
 class ChannelsOf : public RemoteChannels {

@@ -11,11 +11,11 @@
 
 namespace rc10 {
 
-/// Channels of a protocol without a checksum: no single frame is believed. A value goes beyond those of the
-/// two frames before it by its channel's tolerance at most, and farther once a second frame agrees.
+/// Channels of a protocol without a checksum: no single frame is believed. A switch or a key changes once two
+/// frames in a row agree. Any other channel goes beyond the two frames before by its tolerance at most.
 class SteadyChannels {
  public:
-  /// `tolerances`: of each channel, in its own unit. 0, of a switch or a key: two frames must be equal.
+  /// `tolerances`: of each channel, in its own unit; 0: of a switch or a key.
   explicit SteadyChannels(std::vector<double> tolerances)
       : tolerances_(std::move(tolerances)),
         before_(tolerances_.size(), kNoSignal),
@@ -26,21 +26,29 @@ class SteadyChannels {
   void restart() noexcept { frames_ = 0; }
 
   void take(std::span<const double> frame) noexcept {
+    settled_ = true;
     for (std::size_t i = 0; i < values_.size(); ++i) {
       values_[i] = steady(i, frame[i]);
       before_[i] = std::exchange(last_[i], frame[i]);
+      settled_ = settled_ && std::isfinite(values_[i]);
     }
     frames_ = std::min(frames_ + 1, 2);
   }
 
+  /// Two frames have come since the restart: it was no noise that looked like one.
+  [[nodiscard]] bool heard() const noexcept { return frames_ == 2; }
+  /// Every channel has a value.
+  [[nodiscard]] bool settled() const noexcept { return settled_; }
   /// kNoSignal: no two frames agree on it since the restart.
   [[nodiscard]] double operator[](std::size_t channel) const noexcept { return values_[channel]; }
 
  private:
   [[nodiscard]] double steady(std::size_t channel, double value) const noexcept {
-    const double tolerance = tolerances_[channel];
     if (frames_ == 0) return kNoSignal;
-    if (frames_ == 1) return std::fabs(value - last_[channel]) <= tolerance ? value : kNoSignal;
+    const double tolerance = tolerances_[channel];
+    const bool agrees = std::fabs(value - last_[channel]) <= tolerance;
+    if (frames_ == 1) return agrees ? value : kNoSignal;
+    if (tolerance == 0.0) return agrees ? value : values_[channel];
     const auto [least, most] = std::minmax(before_[channel], last_[channel]);
     return std::clamp(value, least - tolerance, most + tolerance);
   }
@@ -50,6 +58,7 @@ class SteadyChannels {
   std::vector<double> last_;
   std::vector<double> values_;
   int frames_ = 0;  ///< Since the restart, up to two.
+  bool settled_ = false;
 };
 
 }  // namespace rc10

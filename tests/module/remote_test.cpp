@@ -7,9 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "fake_robot.hpp"
-#include "module/dbus_protocol.hpp"
-#include "module/sbus_protocol.hpp"
+#include "remote_bench.hpp"
 
 namespace rc10::test::remote_test {
 namespace {
@@ -20,100 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pair;
 
-class Chassis : public Module_Base {
- public:
-  Chassis() : Module_Base({.inputs = {"vx_m_s", "frame"}, .outputs = {}, .events = {}}) {}
-  void update(const Tick&, ModuleRobot&) noexcept override {}
-};
-
-OwnValues row(std::initializer_list<std::pair<const char*, OwnValues::Value>> values) {
-  OwnValues row;
-  for (const auto& [key, value] : values) row.set(key, value);
-  return row;
-}
-
-ModuleSettings settings(const std::string& protocol, const std::string& channel, const std::string& arm) {
-  ModuleSettings settings;
-  settings.name = "remote";
-  auto& own = settings.own;
-  own.set("port", std::string{"/dev/ttyX"});
-  own.set("protocol", protocol);
-  own.set("lost_ms", 100.0);
-  own.set("disable_s", 1.0);
-  if (!arm.empty()) own.set("arm_channel", arm);
-  own.set("arm_above", 0.5);
-  own.set(
-      "sticks",
-      std::vector{row(
-          {{"channel", channel}, {"to", std::string{"base.vx_m_s"}}, {"scale", 2.0}, {"deadband", 0.1}})});
-  own.set("constants", std::vector{row({{"to", std::string{"base.frame"}}, {"value", 2.0}})});
-  return settings;
-}
-
-/// A remote whose frames come every 14 ms, as long as the test lets them.
-class Remote : public ::testing::Test {
- protected:
-  void build(const ModuleSettings& settings) {
-    module_ = std::move(remoteType().build(settings, outlineOf(2)).value());
-    auto need = module_->takeSerialNeed();
-    ASSERT_TRUE(need.has_value());
-    protocol_ = std::move(need->protocol);
-    const Chassis base;
-    ASSERT_TRUE(module_->connect(ModuleDirectory{{{"base", &base}}}).has_value());
-  }
-  void build() { build(settings("dbus", "right_y", "left_switch")); }
-
-  void run(int ticks, bool talks = true) {
-    for (int i = 0; i < ticks; ++i) {
-      if (talks && ++since_frame_ >= 14) {
-        since_frame_ = 0;
-        const auto frame = DbusProtocol::encode(dbus_);
-        protocol_->parse_stream(frame, robot_.now());
-      }
-      robot_.update(*module_);
-      asked_.insert(asked_.end(), robot_.asked().begin(), robot_.asked().end());
-      events_.insert(events_.end(), robot_.events().begin(), robot_.events().end());
-    }
-  }
-  void armSwitch(Dr16Input::Switch position) {
-    dbus_.left_switch = position;
-    run(60);  // four frames: the first one only shows where frames begin
-  }
-  void arm() {
-    armSwitch(Dr16Input::Switch::kDown);
-    armSwitch(Dr16Input::Switch::kUp);
-  }
-  void loseLinkWhileArmed(MotorStatus status) {
-    build();
-    robot_.motor(0).status = status;
-    arm();
-    run(300, false);
-    asked_.clear();
-  }
-  double armed() { return module_->outputs()[1]; }
-  double shown(std::string_view output) {
-    const auto& names = module_->signals().outputs;
-    const auto place = std::find(names.begin(), names.end(), output) - names.begin();
-    return module_->outputs()[static_cast<std::size_t>(place)];
-  }
-  bool asks(RobotRequest request) {
-    return std::any_of(asked_.begin(), asked_.end(),
-                       [&](const auto& asked) { return asked.request == request; });
-  }
-  /// Motors that it has asked to disable.
-  std::size_t disablings() {
-    return static_cast<std::size_t>(std::count_if(
-        asked_.begin(), asked_.end(), [](const auto& a) { return a.request == RobotRequest::kDisable; }));
-  }
-
-  FakeRobot robot_{2};
-  std::unique_ptr<Module_Base> module_;
-  std::unique_ptr<I_Protocol> protocol_;
-  Dr16Input dbus_;
-  int since_frame_ = 0;
-  std::vector<FakeRobot::Asked> asked_;
-  std::vector<std::size_t> events_;
-};
+class Remote : public RemoteBench {};
 
 TEST_F(Remote, ASwitchThatIsUpAtTheStartEnablesNothing) {
   build();
@@ -139,10 +44,11 @@ TEST_F(Remote, TheSwitchOfARemoteThatIsBackCountsFromItsSecondFrame) {
   arm();
   run(500, false);
   run(14);
-  EXPECT_EQ(shown("connected"), 1.0);
+  EXPECT_EQ(shown("connected"), 0.0) << "one frame may be noise";
   EXPECT_TRUE(std::isnan(shown("left_switch")));
   EXPECT_EQ(armed(), 1.0) << "a short loss";
   run(14);
+  EXPECT_EQ(shown("connected"), 1.0);
   EXPECT_EQ(shown("left_switch"), 1.0);
 }
 
@@ -245,7 +151,7 @@ TEST_F(Remote, OneDamagedFrameStartsNothing) {
     SCOPED_TRACE(channel);
     dbus_ = {};
     dbus_.right_switch = Dr16Input::Switch::kMiddle;
-    build(settings("dbus", channel, ""));
+    build(remoteSettings("dbus", channel, ""));
     run(100);
     const auto good = dbus_;
     of(dbus_);
@@ -263,7 +169,7 @@ TEST_F(Remote, OneDamagedFrameStartsNothing) {
 }
 
 TEST_F(Remote, NoSingleFrameCommandsAfterAGap) {
-  build(settings("dbus", "right_y", ""));
+  build(remoteSettings("dbus", "right_y", ""));
   run(100);
   run(200, false);
   dbus_.right_vertical = 660;
@@ -279,14 +185,45 @@ TEST_F(Remote, NoSingleFrameCommandsAfterAGap) {
   EXPECT_TRUE(robot_.sent().contains({0, 0}));
 }
 
-TEST_F(Remote, AStickIsFollowedWithoutDelayAsLongAsItIsMovedByHand) {
-  build(settings("dbus", "right_y", ""));
+TEST_F(Remote, NoSingleFrameOfALossPutsItsEndOff) {
+  build();
+  arm();
+  run(900, false);
+  run(14);  // noise that looks like a frame
+  EXPECT_THAT(robot_.sent(), IsEmpty());
+  EXPECT_EQ(shown("connected"), 0.0);
+  run(200, false);
+  EXPECT_TRUE(asks(RobotRequest::kDisableUnasked));
+}
+
+// Else the input that is missing would fall and rise: a joint would be homed anew.
+TEST_F(Remote, AfterAGapItCommandsAllOrNothing) {
+  build(remoteSettings("dbus", "right_switch", ""));
+  dbus_.right_switch = Dr16Input::Switch::kUp;
   run(100);
-  for (int deflection = 0; deflection <= 660; deflection += 30) {
-    dbus_.right_vertical = static_cast<std::int16_t>(deflection);
+  run(200, false);
+  for (int frame = 0; frame < 5; ++frame) {
+    dbus_.right_switch = frame == 1 ? Dr16Input::Switch::kMiddle : Dr16Input::Switch::kUp;
     run(14);
-    EXPECT_NEAR(shown("right_y"), deflection / 660.0, 1e-6);
+    EXPECT_EQ(robot_.sent().contains({0, 0}), robot_.sent().contains({0, 1})) << "the constant";
+    EXPECT_EQ(robot_.sent().contains({0, 0}), frame >= 3);
   }
+}
+
+TEST_F(Remote, ASwitchThatGoesDownActsNoMoreThoughADamagedFrameShowsItUp) {
+  build();
+  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
+  arm();
+  bool acts = true;
+  for (const auto position : {Dr16Input::Switch::kDown, Dr16Input::Switch::kUp, Dr16Input::Switch::kDown}) {
+    dbus_.left_switch = position;
+    for (int i = 0; i < 14; ++i) {
+      run(1);
+      if (since_frame_ == 0 && std::exchange(acts, false)) asked_.clear();
+      EXPECT_EQ(robot_.sent().empty(), !acts);
+    }
+  }
+  EXPECT_FALSE(asks(RobotRequest::kEnable));
 }
 
 TEST_F(Remote, TheEndOfAnEstopEnablesNothing) {
@@ -321,7 +258,7 @@ TEST_F(Remote, SticksBecomeInputsWhileItIsArmed) {
 }
 
 TEST_F(Remote, WithoutAnArmSwitchItCommandsWheneverItIsHeard) {
-  build(settings("dbus", "right_y", ""));
+  build(remoteSettings("dbus", "right_y", ""));
   dbus_.right_vertical = 660;
   run(50);
   EXPECT_FALSE(robot_.sent().empty());
@@ -419,7 +356,7 @@ TEST_F(Remote, AMotorWhoseDriveHasRefusedIsAskedForAgain) {
 TEST_F(Remote, AfterAGapItActsOnTheSwitchOfNoSingleFrame) {
   loseLinkWhileArmed(MotorStatus::kFault);
   run(14);
-  ASSERT_EQ(shown("connected"), 1.0);
+  ASSERT_LT(shown("age_ms"), 14.0);
   EXPECT_THAT(robot_.sent(), IsEmpty()) << "the first frame: the switch may be down";
   EXPECT_THAT(asked_, IsEmpty());
   run(14);
@@ -442,7 +379,7 @@ TEST_F(Remote, ASwitchThatWentDownInAGapNeitherEnablesNorCommands) {
 
 TEST_F(Remote, ItsDriverIsAClientWhileItIsHeard) {
   build();
-  run(30);
+  run(50);
   EXPECT_TRUE(robot_.clientHeard());
   EXPECT_EQ(robot_.now() - robot_.clientSaid(), std::chrono::milliseconds{since_frame_ + 1})
       << "by its last frame";
@@ -493,94 +430,10 @@ TEST_F(Remote, AnEstopIsNotItsToClear) {
   EXPECT_TRUE(asks(RobotRequest::kClear)) << "of the fault";
 }
 
-TEST_F(Remote, AReceiverThatSaysFailsafeIsLost) {
-  build(settings("sbus", "ch3", ""));
-  SbusInput sbus;
-  sbus.raw.fill(SbusInput::kCentre);
-  const auto send = [&] {
-    const auto frame = SbusProtocol::encode(sbus);
-    for (int i = 0; i < 10; ++i) robot_.update(*module_);
-    protocol_->parse_stream(frame, robot_.now());
-    robot_.update(*module_);
-  };
-  send();
-  send();
-  EXPECT_FALSE(robot_.sent().empty());
-  sbus.failsafe = true;
-  send();
-  EXPECT_THAT(robot_.sent(), IsEmpty());
-  EXPECT_EQ(module_->outputs()[0], 0.0);
-}
-
-class SbusRemote : public Remote {
- protected:
-  static constexpr int kDown = 200;
-  static constexpr int kUp = 1800;
-
-  /// One frame, 14 ms after the last; true: the remote commands.
-  bool send(int switch_raw, bool lost = false) {
-    SbusInput sbus;
-    sbus.raw.fill(SbusInput::kCentre);
-    sbus.raw[4] = static_cast<std::uint16_t>(switch_raw);
-    sbus.frame_lost = lost;
-    const auto frame = SbusProtocol::encode(sbus);
-    for (int i = 0; i < 14; ++i) {
-      if (i == 13) protocol_->parse_stream(frame, robot_.now());
-      robot_.update(*module_);
-      asked_.insert(asked_.end(), robot_.asked().begin(), robot_.asked().end());
-    }
-    return !robot_.sent().empty();
-  }
-  bool enables() { return asks(RobotRequest::kEnable) || asks(RobotRequest::kClear); }
-};
-
-TEST_F(SbusRemote, ASwitchThatWentUpInALossEnablesNothingHoweverShortTheLossWas) {
-  auto quick = settings("sbus", "ch3", "ch5");
-  quick.own.set("lost_ms", 2000.0);
-  build(quick);
-  for (auto& motor : robot_.motors()) motor.status = MotorStatus::kReady;
-  for (int i = 0; i < 4; ++i) send(kDown);
-  for (int i = 0; i < 100; ++i) send(kUp, true);  // 1.4 s: beyond disable_s
-  EXPECT_TRUE(asks(RobotRequest::kDisableUnasked));
-  for (int i = 0; i < 4; ++i) EXPECT_FALSE(send(kUp));
-  EXPECT_FALSE(enables());
-  send(kDown);
-  send(kDown);
-  send(kUp);
-  EXPECT_TRUE(send(kUp));
-  EXPECT_TRUE(enables());
-}
-
-TEST_F(SbusRemote, AFrameThatShowsTheSwitchDownEndsItsCommandsAtOnce) {
-  build(settings("sbus", "ch3", "ch5"));
-  for (const int raw : {kDown, kDown, kDown, kUp, kUp}) send(raw);
-  send(kUp, true);
-  ASSERT_TRUE(send(kUp));
-  send(kDown, true);
-  EXPECT_FALSE(send(kDown));
-  EXPECT_EQ(armed(), 1.0) << "until a second says so";
-  send(kDown);
-  EXPECT_EQ(armed(), 0.0);
-}
-
-TEST_F(SbusRemote, AFrameThatTheReceiverLostIsNoGapOfASwitchThatIsUp) {
-  build(settings("sbus", "ch3", "ch5"));
-  for (const int raw : {kDown, kDown, kDown, kUp})
-    EXPECT_FALSE(send(raw));  // the first frame finds the rhythm
-  EXPECT_TRUE(send(kUp));
-  for (int i = 0; i < 5; ++i) {
-    EXPECT_FALSE(send(kUp, true));
-    EXPECT_TRUE(send(kUp));
-  }
-  for (int i = 0; i < 8; ++i) EXPECT_FALSE(send(kUp, true));  // 112 ms: a gap
-  EXPECT_FALSE(send(kUp));
-  EXPECT_TRUE(send(kUp));
-}
-
 TEST(RemoteType, NamesTheChannelsThatThereAre) {
-  EXPECT_THAT(remoteType().build(settings("sbus", "right_y", ""), outlineOf(1)).error().message,
+  EXPECT_THAT(remoteType().build(remoteSettings("sbus", "right_y", ""), outlineOf(1)).error().message,
               HasSubstr("sticks: there is no channel 'right_y'; there are ch1, ch2"));
-  EXPECT_THAT(remoteType().build(settings("dbus", "right_y", "ch5"), outlineOf(1)).error().message,
+  EXPECT_THAT(remoteType().build(remoteSettings("dbus", "right_y", "ch5"), outlineOf(1)).error().message,
               HasSubstr("arm_channel: there is no channel 'ch5'; there are right_x"));
 }
 

@@ -64,8 +64,8 @@ inline OwnValues valuesOf(const Row& row, bool sent) {
   return own;
 }
 
-ModuleSettings settingsOf(const std::string& protocol, const std::vector<Row>& receive,
-                          const std::vector<Row>& send, double rate_hz = 50) {
+inline ModuleSettings settingsOf(const std::string& protocol, const std::vector<Row>& receive,
+                                 const std::vector<Row>& send, double rate_hz = 50) {
   ModuleSettings settings;
   settings.name = "board";
   settings.own.set("port", std::string{"/dev/ttyUSB0"});

@@ -26,8 +26,10 @@ constexpr double kMitDampShare = 0.25;  // of the damping of brake
 // Share of the torque of a spring one turn of the field away (at most the whole range) that counts as a pull
 // the other way: delay and resolution of the report hide the rest.
 constexpr double kSpringMismatch = 0.6;
-// An answer that came by a USB adapter may show a law that is this old.
+// An answer that came by a USB adapter may show a law that is this old: then it has that law's torque, up to
+// this share of the range.
 constexpr Duration kLongestAnswer = std::chrono::milliseconds{10};
+constexpr double kSameTorque = 0.25;
 // Samples in a row: a stiff damping pulls the other way for one sample alone.
 constexpr int kSamplesAgainst = 4;
 // Detail of kDriveSetting: the drive counts its turns otherwise.
@@ -143,21 +145,21 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report, MonotonicTime r
   const double stiffness = sent_.last().stiffness_nm_per_rad;
   const double turn_nm = stiffness * cubemars::positionWrapRad(own().ranges);
   const double apart_nm = kSpringMismatch * std::min(most_nm, turn_nm);
-  // Too little torque is not torque the other way: near its no-load speed a drive gives less than it is told.
-  double low_nm = 0.0;
-  double high_nm = 0.0;
-  const bool springs = obeying() && stiffness > 0.0;
-  const bool suspect = springs && std::fabs(report.torque_nm) > apart_nm;
-  if (suspect) {
-    sent_.forEach(received - kLongestAnswer, [&](const SpringLaw& law) {
-      const double told_nm = std::clamp(torqueNm(law, measured()), -most_nm, most_nm);
-      low_nm = std::min(low_nm, told_nm);
-      high_nm = std::max(high_nm, told_nm);
-    });
-  }
+  const auto told_nm = [&](const SpringLaw& law) {
+    return std::clamp(torqueNm(law, measured()), -most_nm, most_nm);
+  };
   int against = 0;
-  if (suspect && report.torque_nm > high_nm + apart_nm) against = 1;
-  if (suspect && report.torque_nm < low_nm - apart_nm) against = -1;
+  if (obeying() && stiffness > 0.0 && std::fabs(report.torque_nm) > apart_nm) {
+    // Too little torque is not torque the other way: near its no-load speed a drive gives less than it is
+    // told.
+    const auto [low_nm, high_nm] = std::minmax({told_nm(sent_.last()), told_nm(sent_.lastButOne()), 0.0});
+    if (report.torque_nm > high_nm + apart_nm) against = 1;
+    if (report.torque_nm < low_nm - apart_nm) against = -1;
+  }
+  const auto shows = [&](const SpringLaw& law) {
+    return std::fabs(report.torque_nm - told_nm(law)) <= kSameTorque * most_nm;
+  };
+  if (against != 0 && sent_.anySince(received - kLongestAnswer, shows)) against = 0;
   const bool goes_on = against * samples_against_ > 0;
   samples_against_ =
       std::clamp(goes_on ? samples_against_ + against : against, -kSamplesAgainst, kSamplesAgainst);

@@ -18,15 +18,17 @@ class SentLaws {
   /// "No torque" before the first.
   [[nodiscard]] const SpringLaw& last() const noexcept { return laws_[newest_].law; }
 
-  /// Each law that was in force after `since`: those sent later, and the one before them. The one before the
-  /// last is always among them: the last may not have arrived.
-  template <typename Visit>
-  void forEach(MonotonicTime since, Visit visit) const noexcept {
+  /// The one before it, which acts until the last has arrived.
+  [[nodiscard]] const SpringLaw& lastButOne() const noexcept { return sent(1).law; }
+
+  /// Whether `fits(law)` for one that was in force after `since`.
+  template <typename Fits>
+  [[nodiscard]] bool anySince(MonotonicTime since, Fits fits) const noexcept {
     for (std::size_t back = 0; back < kKept; ++back) {
-      const Sent& sent = laws_[(newest_ + kKept - back) % kKept];
-      visit(sent.law);
-      if (back > 0 && sent.at <= since) return;
+      if (fits(sent(back).law)) return true;
+      if (sent(back).at <= since) return false;
     }
+    return false;
   }
 
  private:
@@ -34,7 +36,11 @@ class SentLaws {
     SpringLaw law{};
     MonotonicTime at{};
   };
-  static constexpr std::size_t kKept = 12;  // 10 ms at 1 kHz, and those at its ends
+  static constexpr std::size_t kKept = 42;  // 10 ms at 4 kHz, and those at its ends
+
+  [[nodiscard]] const Sent& sent(std::size_t back) const noexcept {
+    return laws_[(newest_ + kKept - back) % kKept];
+  }
 
   std::array<Sent, kKept> laws_{};
   std::size_t newest_ = 0;
