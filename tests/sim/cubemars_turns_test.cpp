@@ -44,6 +44,24 @@ TEST(CubemarsTurns, ADriveOnAnotherTurnOfItsFieldIsStoppedBeforeItGoesFar) {
   }
 }
 
+// Half of its torque, told a moment ago, does not excuse all of it.
+TEST(CubemarsTurns, ASpringOnAnotherTurnIsSeenBehindATorqueOfThatDirectionToo) {
+  sim::MotorLoad load;
+  load.initial_angle_deg = 1449.0F;
+  load.stalled = true;
+  auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
+  rig.comeOnline();
+  ASSERT_TRUE(rig.enable());
+  rig.command({.mode = ControlMode::kCurrent, .torque_ff_nm = -9.0F});
+  rig.run(milliseconds{50});
+  ASSERT_NEAR(rig.motor().feedback().torque_nm, -9.0, 0.5);
+  rig.command({.mode = ControlMode::kTotalAngle, .value = rig.motor().feedback().total_angle_deg});
+  int ticks = 0;
+  for (; ticks < 100 && rig.motor().complaint().fault == FaultCode::kNone; ++ticks) rig.run(milliseconds{1});
+  EXPECT_EQ(rig.motor().complaint().fault, FaultCode::kDriveSetting);
+  EXPECT_LE(ticks, 8);
+}
+
 // Its spring pulls against a load for some milliseconds longer than it is told to.
 TEST(CubemarsTurns, AReleasedSpringWhoseAnswersComeLateIsNoOtherTurn) {
   for (const int late_ms : {0, 5, 7, 9}) {
