@@ -162,6 +162,7 @@ class Oracle {
     bool stood = false;             ///< For kSettled, by what was seen, since the fallback began,
     bool of_estop = false;          ///< of the robot.
     double held_deg = kUnsaid;      ///< Where a hold of a loop of rc10d began.
+    bool held = false;              ///< It holds, by what was seen.
     MonotonicTime held_at{};        ///< Its last sample since,
     double last_deg = 0.0;          ///< and where it was then.
     std::uint64_t held_losses = 0;  ///< Losses of its place, up to then.

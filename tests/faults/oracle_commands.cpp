@@ -451,24 +451,22 @@ void Oracle::judgeBrake(std::size_t index, Actions actions) {
 }
 
 // And one that holds a shaft which is far from where that began, and comes no nearer. Where a reading leaps,
-// or is missing, its turn may be another one. A motor that loses its place holds anew where it is then.
+// its zero or its turn may be another one, and a motor that loses its place holds anew: the place is unknown
+// until another hold begins.
 void Oracle::judgeHold(std::size_t index, const MotorSnapshot& seen, Actions actions) {
   auto& motor = motors_[index];
-  const bool must_hold = seen.acting == Acting::kHold && actions == only(FallbackAction::kHold) &&
-                         !motor.was_hot && motor.host_holds;
+  const bool acts = seen.acting == Acting::kHold;
+  const bool must_hold = acts && actions == only(FallbackAction::kHold) && !motor.was_hot && motor.host_holds;
   const double here_deg = seen.feedback.total_angle_deg;
   const auto gap = seen.feedback.received - std::exchange(motor.held_at, seen.feedback.received);
   const double way_deg = std::fabs(here_deg - std::exchange(motor.last_deg, here_deg));
   const double rpm = std::fabs(motor.wire->measured().velocity_rpm);
-  const bool follows = gap <= motor.config->feedback_timeout / 4 &&
-                       way_deg <= 1.0 + 9.0 * rpm * static_cast<double>(seconds(gap));
+  const bool follows =
+      gap <= motor.config->feedback_timeout && way_deg <= 1.0 + 9.0 * rpm * static_cast<double>(seconds(gap));
   const auto losses = seen.feedback.losses + seen.feedback.jumps;
   const bool lost = losses != std::exchange(motor.held_losses, losses);
-  if (!must_hold || !follows || lost) motor.held_deg = kUnsaid;
-  if (must_hold && std::isnan(motor.held_deg)) {
-    motor.held_deg = here_deg + (misplaced_ == index ? 90.0 : 0.0);
-    motor.unheld_ticks = 0;
-  }
+  if (!std::exchange(motor.held, acts)) motor.held_deg = here_deg + (misplaced_ == index ? 90.0 : 0.0);
+  if (!acts || !follows || lost) motor.held_deg = kUnsaid;
   if (!must_hold || !motor.new_sample) return;
   const double away_deg = here_deg - motor.held_deg;
   const auto& told = motor.told;

@@ -77,6 +77,18 @@ TEST_F(FaultTest, AFaultIsLatchedUntilClearedAndEnabledAgain) {
   EXPECT_EQ(robot->motor(kLeft).status, MotorStatus::kActive);
 }
 
+TEST(DriveThatComplains, ChangesNoFaultThatItsMotorHasAlready) {
+  OneMotor one{"model: DM4310, id: 1, master_id: 17"};
+  auto& drive = one.robot().simBus().drive(0);
+  drive.fault(8);
+  one.follow(ControlMode::kVelocity, 30.0, 100);
+  ASSERT_EQ(one.seen().status, MotorStatus::kFault);
+  ASSERT_EQ(one.seen().fault, FaultCode::kDriveOverVoltage);
+  drive.fault(9);
+  one.robot().run(100);
+  EXPECT_EQ(one.seen().fault, FaultCode::kDriveOverVoltage);
+}
+
 TEST_F(FaultTest, AHotMotorIsStoppedAsSoonAsItIsEnabled) {
   start(robotWith({.temperature_derate_c = 10.0F, .temperature_trip_c = 20.0F}));
   turnBoth(5);
