@@ -189,9 +189,9 @@ class Remote : public Module_Base {
 
   void update(const Tick& tick, ModuleRobot& robot) noexcept override {
     const Duration age = channels_->age(tick.now);
-    const bool talks = age < lost_ && !channels_->saysLost();
-    if (talks) takeFrame(tick.now - age);
-    const bool heard = talks && steady_.heard();
+    const bool lost = channels_->saysLost();
+    if (age < lost_) takeFrame(tick.now - age, lost);
+    const bool heard = age < lost_ && !lost && steady_.heard();
     watchLink(heard, tick, robot);
     if (heard) {
       robot.hearClient(tick.now - age);
@@ -201,9 +201,9 @@ class Remote : public Module_Base {
     const bool disabled = std::exchange(disables_, robot.disables()) != robot.disables();
     if (disabled || robot.state() != RobotStatus::kRun) arming_until_ = tick.now;
     // After a gap the switch counts from the second frame. It may be going down: it counts as up until two
-    // frames say so, and acts no more from the first on until two show it up again.
-    const bool up = heard && armed_ && switch_agrees_ && switch_up_.value_or(false);
-    if (up) arm(tick, robot);
+    // frames say so, and acts no more from the first on. It clears and enables when both show it up.
+    const bool up = heard && armed_ && switch_up_.value_or(false) && last_up_.value_or(false);
+    if (up && switch_agrees_) arm(tick, robot);
     if (up || (heard && !arm_channel_)) command(robot);
     show(heard, age);
   }
@@ -246,16 +246,19 @@ class Remote : public Module_Base {
     robot.askAll(RobotRequest::kDisableUnasked);
   }
 
-  // Neither protocol has a checksum, and parity lets two wrong bits pass. After a gap all is read anew; a
-  // single frame that the receiver lost is none.
-  void takeFrame(MonotonicTime received) noexcept {
+  // Neither protocol has a checksum, and parity lets two wrong bits pass. After a gap all is read anew. One
+  // frame that the receiver lost is none, two are.
+  void takeFrame(MonotonicTime received, bool lost) noexcept {
     if (received == last_frame_) return;
-    if (received - last_frame_ >= lost_) {
+    const bool again = std::exchange(lost_frame_, lost) && lost;
+    if (again || received - last_good_ >= lost_) {
       steady_.restart();
       last_up_ = switch_up_ = std::nullopt;
       switch_agrees_ = false;
     }
     last_frame_ = received;
+    if (lost) return;
+    last_good_ = received;
     channels_->read(newest_);
     steady_.take(newest_);
     if (arm_channel_) takeSwitch(newest_[*arm_channel_]);
@@ -344,7 +347,9 @@ class Remote : public Module_Base {
   std::optional<bool> switch_up_;  ///< The switch as two frames in a row had it.
   bool switch_agrees_ = false;     ///< The last two frames agree on it.
   double switch_ = kNoSignal;      ///< Its channel when they had it.
-  MonotonicTime last_frame_{};     ///< When it came.
+  MonotonicTime last_frame_{};     ///< When it came,
+  MonotonicTime last_good_{};      ///< and the last that the receiver had heard.
+  bool lost_frame_ = false;        ///< The receiver had lost the last one.
 
   int was_heard_ = -1;  ///< -1: never.
   bool armed_ = false;

@@ -78,6 +78,17 @@ TEST_F(SbusRemote, AFrameThatShowsTheSwitchDownEndsItsCommandsAtOnce) {
   EXPECT_EQ(armed(), 0.0);
 }
 
+TEST_F(SbusRemote, OneFrameWithoutItsFlagsIsNoEndOfALoss) {
+  build(remoteSettings("sbus", "ch3", ""));
+  for (int i = 0; i < 4; ++i) send(kUp);
+  ASSERT_TRUE(send(kUp));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(send(kUp, true));
+  EXPECT_FALSE(send(kUp)) << "two wrong bits of a frame that says failsafe";
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(send(kUp, true));
+  EXPECT_FALSE(send(kUp));
+  EXPECT_TRUE(send(kUp));
+}
+
 TEST_F(SbusRemote, AFrameThatTheReceiverLostIsNoGapOfASwitchThatIsUp) {
   build(remoteSettings("sbus", "ch3", "ch5"));
   for (const int raw : {kDown, kDown, kDown, kUp})

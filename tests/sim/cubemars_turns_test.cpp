@@ -106,18 +106,21 @@ TEST(CubemarsTurns, ALargeStepAtFullSpeedIsNoOtherTurn) {
 }
 
 TEST(CubemarsTurns, ASoftSpringOnAnotherTurnIsSeenToo) {
-  sim::MotorLoad load;
-  load.initial_angle_deg = 1449.0F;
-  auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
-  rig.comeOnline();
-  ASSERT_TRUE(rig.enable());
-  rig.command({.mode = ControlMode::kImpedance,
-               .value = rig.motor().feedback().total_angle_deg,
-               .stiffness_nm_per_rad = 0.4F,
-               .damping_nms_per_rad = 0.2F});
-  for (int ticks = 0; ticks < 50 && rig.motor().complaint().fault == FaultCode::kNone; ++ticks)
-    rig.run(milliseconds{1});
-  EXPECT_EQ(rig.motor().complaint().native_code, 0x4000'0000U);
+  for (const float stiffness : {0.15F, 0.4F}) {
+    sim::MotorLoad load;
+    load.initial_angle_deg = 1449.0F;
+    load.stalled = stiffness < 0.2F;
+    auto rig = rigOf(settingsOf({"AK80-9", "mit"}), load);
+    rig.comeOnline();
+    ASSERT_TRUE(rig.enable());
+    rig.command({.mode = ControlMode::kImpedance,
+                 .value = rig.motor().feedback().total_angle_deg,
+                 .stiffness_nm_per_rad = stiffness,
+                 .damping_nms_per_rad = 0.2F});
+    for (int ticks = 0; ticks < 50 && rig.motor().complaint().fault == FaultCode::kNone; ++ticks)
+      rig.run(milliseconds{1});
+    EXPECT_EQ(rig.motor().complaint().native_code, 0x4000'0000U) << stiffness;
+  }
 }
 
 TEST(CubemarsTurns, AfterASilenceOutsideOfItsFieldNoSpringIsTrusted) {

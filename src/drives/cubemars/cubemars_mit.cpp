@@ -27,7 +27,7 @@ constexpr double kMitDampShare = 0.25;  // of the damping of brake
 // the other way: delay and resolution of the report hide the rest.
 constexpr double kSpringMismatch = 0.6;
 // An answer that came by a USB adapter may show a law that is this old: then it has that law's torque, up to
-// this share of the range.
+// this share of the same torque.
 constexpr Duration kLongestAnswer = std::chrono::milliseconds{10};
 constexpr double kSameTorque = 0.25;
 // Samples in a row: a stiff damping pulls the other way for one sample alone.
@@ -157,7 +157,7 @@ void CubemarsMit::watchSpring(const cubemars::MitReport& report, MonotonicTime r
     if (report.torque_nm < low_nm - apart_nm) against = -1;
   }
   const auto shows = [&](const SpringLaw& law) {
-    return std::fabs(report.torque_nm - told_nm(law)) <= kSameTorque * most_nm;
+    return std::fabs(report.torque_nm - told_nm(law)) <= kSameTorque * std::min(most_nm, turn_nm);
   };
   if (against != 0 && sent_.anySince(received - kLongestAnswer, shows)) against = 0;
   const bool goes_on = against * samples_against_ > 0;
