@@ -382,6 +382,16 @@ TEST_P(HeldFamily, IsNotActiveBeforeItIsHeardAgainAfterAPauseInItsEnabling) {
   EXPECT_NE(status(), MotorStatus::kActive);
 }
 
+TEST_P(HeldFamily, IsNotActiveByAnAnswerThatCameWithTheRequest) {
+  robot.stampLate(std::chrono::microseconds{500});  // at the time of the tick
+  ASSERT_TRUE(isHeld());
+  robot.beginEnabling(kOne);
+  robot.tick();
+  robot.simBus().silence(kMotor, true);
+  robot.run(3);
+  EXPECT_EQ(status(), MotorStatus::kEnabling);
+}
+
 TEST_P(HeldFamily, ObeysAfterItWasEnabledWhileItWasHeld) {
   ASSERT_TRUE(isHeld());
   const auto held = robot.motor(kMotor).acting;

@@ -69,6 +69,20 @@ TEST_P(VescThatIsHeld, AfterAGapIsRefusedAndHeldOnAndHasToRestFirst) {
   EXPECT_EQ(motor_.seen().status, MotorStatus::kActive);
 }
 
+TEST_P(VescThatIsHeld, AfterAGapInItsEnablingIsHeldOnAndHasToRestFirst) {
+  disable(Acting::kHold);
+  robot().simBus().silence(0, true);
+  robot().beginEnabling(kOne);
+  robot().tick();
+  ASSERT_EQ(motor_.seen().status, MotorStatus::kEnabling);
+  robot().tick(330);
+  robot().simBus().silence(0, false);
+  OrderResult result;
+  for (int i = 0; i < 100 && !robot().exchange().results.pop(result); ++i) robot().tick();
+  EXPECT_EQ(result.motors[0], Refusal::kRestFirst);
+  EXPECT_EQ(motor_.seen().acting, Acting::kHold);
+}
+
 TEST_P(VescThatIsHeld, WithAProvenWatchdogIsEnabledAtOnce) {
   disable(Acting::kHold);
   EXPECT_EQ(enable(), Refusal::kNone);
