@@ -406,14 +406,12 @@ std::optional<MotorStatus> Axis::handle(MotorEvent event, RobotStatus robot, con
   const bool stopped = isOn(before) && !isOn(status_);
   if (stopped || status_ == MotorStatus::kFault) stop_ = stop;
   if (status_ != MotorStatus::kActive) dropTarget();
-  const bool stays = event == MotorEvent::kDisableUnasked && fallback_.acts();
   const bool rests = (before == MotorStatus::kActive || rests_while_held) && status_ == MotorStatus::kReady;
-  if (rests)
-    rested_ = stays                                  ? Rested::kStayed
-              : event == MotorEvent::kDisableUnasked ? Rested::kUnasked
-                                                     : Rested::kAsked;
-  if (rests && stays) fallback_.disabled();
-  if (rests && !stays) {
+  if (rests && event == MotorEvent::kDisableUnasked && fallback_.acts()) {
+    rested_ = Rested::kStayed;
+    fallback_.disabled();
+  } else if (rests) {
+    rested_ = event == MotorEvent::kDisableUnasked ? Rested::kUnasked : Rested::kAsked;
     const auto& config = entry_.fallback;
     const bool asked = isDisable(event) || robot == RobotStatus::kStopping;
     const auto action = asked ? config.on_disable : config.on_estop;

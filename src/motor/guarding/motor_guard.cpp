@@ -147,10 +147,7 @@ bool MotorGuard::runsAway(const Observation& seen) noexcept {
       (seen.limits & kLimitCurrent) != 0 && effort * velocity_rpm < 0.0F && !moveIsAsked(seen);
   if (opposed && !opposed_) opposed_rpm_ = std::fabs(velocity_rpm);
   opposed_ = opposed;
-  if (!opposed && gained_rpm_ == 0.0F) {  // as nearly always
-    runaway_.reset();
-    return false;
-  }
+  if (!opposed && gained_rpm_ == 0.0F) return false;  // as nearly always
   bool gained = false;
   if (opposed) {
     opposed_rpm_ = std::min(opposed_rpm_, std::fabs(velocity_rpm));

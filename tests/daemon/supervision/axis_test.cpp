@@ -77,11 +77,14 @@ TEST_F(AxisTest, IsReadyWithFreshFeedbackAndOfflineWithoutForItsTimeout) {
 
 TEST_F(AxisTest, SaysWhyATargetDoesNotAct) {
   tick();
+  const auto before = now_;
   EXPECT_EQ(axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive);
   activate();
   EXPECT_EQ(axis_.follow(kTurn, now_, kPlanner, {now_, now_ + 50ms}), std::nullopt);
   EXPECT_EQ(axis_.follow({.mode = ControlMode::kVoltage}, now_, kPlanner, {now_, now_ + 50ms}),
             SkipReason::kRefused);
+  EXPECT_EQ(axis_.follow(kTurn, before, kPlanner, {now_, now_ + 50ms}), SkipReason::kNotActive)
+      << "then it was not";
 }
 
 TEST_F(AxisTest, RefusesAnAngleThatNoDoubleTellsExactly) {

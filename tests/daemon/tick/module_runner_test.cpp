@@ -240,9 +240,12 @@ TEST_F(ModuleRunnerTest, LettingGoIsNotWithheldWithTheOtherTargets) {
   enable();
   robot_->run(100);
   ASSERT_EQ(robot_->motor(0).acting, Acting::kTarget);
-  lets_go = true;  // the other has no reference
+  (void)robot_->orderFor(MotorSet{}.set(1), Operation::kDisable);
+  const auto skipped = robot_->snapshot().skipped_setpoints;
+  lets_go = true;
   robot_->run(100);
   EXPECT_EQ(robot_->motor(0).acting, Acting::kNothing);
+  EXPECT_GE(robot_->snapshot().skipped_setpoints, skipped + 100);
 }
 
 TEST_F(ModuleRunnerTest, OnlyADisableThatSomebodyAskedForLetsGoOfWhatAnEstopBrakes) {

@@ -383,6 +383,7 @@ TEST_F(SchedulerTest, AStopIsNoEstopAndEndsAsAStopWhateverIsAskedMeanwhile) {
 TEST_F(SchedulerTest, StoppingWaitsForEchoesOfTheRestFrames) {
   robot.run(5);
   robot.inboxes()[0].echo_reads.store(1);
+  robot.inboxes()[0].confirmed.store(1000);  // of frames before the stop
   robot.scheduler().beginStop();
   robot.run(10);
   EXPECT_FALSE(robot.scheduler().stopped());

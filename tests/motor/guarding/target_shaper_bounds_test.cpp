@@ -284,6 +284,13 @@ TEST_F(TargetShaperTest, UnderACeilingAnAngleMovesNoFasterAndItsSpeedIsBounded) 
   }
 }
 
+TEST_F(TargetShaperTest, ACeilingBeginsFromTheAngleThatIsInForce) {
+  ASSERT_EQ(step(ControlMode::kAngle, 30.0).target.value, 30.0);
+  shaper.setCeiling(20.0);
+  EXPECT_EQ(step(ControlMode::kAngle, 30.0).target.value, 30.0);
+  EXPECT_NEAR(step(ControlMode::kAngle, 40.0).target.value, 30.12, 1e-6);
+}
+
 TEST_F(TargetShaperTest, AShaftThatFollowsUnderACeilingIsLedNoFartherThanItsLoopNeeds) {
   configure({.approach_rpm_per_deg = 2.0F});
   shaper.setCeiling(20.0);
