@@ -182,6 +182,8 @@ TEST_P(Family, AHoldAfterAPauseBeginsWhereTheShaftIs) {
   paused.hold(kMotor, {.mode = ControlMode::kVelocity, .value = GetParam().rpm}, 2000);
   const double before_deg = angleDeg();
   paused.tick(60);
+  const auto fallback = holds ? Acting::kHold : Acting::kBrake;
+  EXPECT_EQ(paused.motor(kMotor).acting, fallback) << "though it may have to measure first";
   const double after_deg = angleDeg();
   ASSERT_GT(after_deg, before_deg + 5.0) << "it ran on";
   paused.run(20);
@@ -190,7 +192,7 @@ TEST_P(Family, AHoldAfterAPauseBeginsWhereTheShaftIs) {
     const double held_deg = paused.robot().motors()[kMotor].motor->heldAngleDeg();
     EXPECT_NEAR(held_deg, after_deg, 5.0 + 0.02 * GetParam().rpm) << "nothing pulls it back";
   }
-  EXPECT_EQ(paused.motor(kMotor).acting, holds ? Acting::kHold : Acting::kBrake);
+  EXPECT_EQ(paused.motor(kMotor).acting, fallback);
 }
 
 // Its last speed is of before the pause.
@@ -221,6 +223,21 @@ TEST_P(Family, ARampAfterAPauseDoesNotDriveAShaftThatAnObstacleHasStopped) {
   EXPECT_LT(most_a, std::max(0.2, 0.25 * pushed_a));
   EXPECT_LT(most_rpm, 0.05 * GetParam().rpm);
   EXPECT_EQ(paused.motor(kMotor).acting, Acting::kRamp);
+}
+
+TEST_P(Family, ARampAfterAPauseBeginsAtTheSpeedOfTheShaft) {
+  auto config = configOf(GetParam());
+  config.buses[0].motors[0].fallback.on_estop = FallbackAction::kRamp;
+  config.buses[0].motors[0].fallback.ramp = std::chrono::seconds{2};
+  VirtualRobot paused{config};
+  ASSERT_TRUE(activate(paused));
+  paused.hold(kMotor, {.mode = ControlMode::kVelocity, .value = GetParam().rpm}, 2000);
+  paused.exchange().estop.store(true);
+  paused.tick(60);
+  EXPECT_EQ(paused.motor(kMotor).acting, Acting::kRamp) << "though it may have to measure first";
+  paused.run(1000);
+  const double rpm = paused.simBus().drive(kMotor).physics().outputRpm();
+  EXPECT_NEAR(rpm, 0.5 * GetParam().rpm, 0.2 * GetParam().rpm);
 }
 
 class RestartedFamily : public Family {};

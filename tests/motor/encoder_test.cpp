@@ -242,15 +242,34 @@ TEST(Encoder, FullAccelerationAcrossTheLongestGapIsStillCounted) {
 
 TEST(Encoder, ALongerGapLosesTheReferenceUntilItIsAcknowledged) {
   Encoder encoder(kM2006.encoder);
+  Encoder in_time(kM2006.encoder);
   const MonotonicTime start{milliseconds{1000}};
   ASSERT_TRUE(encoder.update(4000, 18000.0F, start));
   ASSERT_TRUE(encoder.update(4100, 18000.0F, start + encoder.longestGap() + Duration{1}));
   EXPECT_TRUE(encoder.referenceLost());
+  ASSERT_TRUE(in_time.update(4000, 0.0F, start));
+  ASSERT_TRUE(in_time.update(4000, 0.0F, start + in_time.longestGap()));
+  EXPECT_FALSE(in_time.referenceLost());
   EXPECT_EQ(encoder.totalCounts(), 4100);  // the nearest: the position within the turn stays right
   ASSERT_TRUE(encoder.update(4200, 0.0F, start + encoder.longestGap() + milliseconds{1}));
   EXPECT_TRUE(encoder.referenceLost());
   encoder.acknowledgeLoss();
   EXPECT_FALSE(encoder.referenceLost());
+}
+
+TEST(Encoder, TurnsThatTwoSpacingsCountDifferentlyAreInDoubt) {
+  for (const int stamped_ms : {1, 2}) {
+    // 0.15 turns in a period: 0.52 are 0.13 less than one period explains, and 0.78 less than two.
+    Encoder::Config config;
+    config.velocity_error_rpm = 9000.0F;
+    config.sample_period = milliseconds{1};
+    Encoder encoder(config);
+    const MonotonicTime first{milliseconds{1000}};
+    ASSERT_TRUE(encoder.update(0, 39'000.0F, first));
+    ASSERT_TRUE(encoder.update(4260, 39'000.0F, first + milliseconds{stamped_ms}));
+    EXPECT_EQ(encoder.referenceLost(), stamped_ms == 2) << stamped_ms;
+    EXPECT_EQ(encoder.jumps(), 0U);
+  }
 }
 
 TEST(Encoder, CountsBothDirectionsAcrossTheWrap) {

@@ -15,21 +15,24 @@ using namespace guard_bench;
 class OwnLoopGuardTest : public MotionGuardTest {
  protected:
   OwnLoopGuardTest() { shoved(); }
-  /// Against all its torque it has gained speed the other way.
-  void shoved(const Target& asked = {}) {
+  /// Against all its torque it has gained speed the other way; `sign`: of that torque.
+  void shoved(const Target& asked = {}, float sign = 1.0F) {
     guard = MotorGuard{{.runaway_rpm = 48.0F, .runaway_time = 100ms}};
     unit = CommandUnit::kNative;
     target = asked;
-    feedback.current_a = 20.0F;
-    EXPECT_EQ(atLimit(-1.0F, 1), FaultCode::kNone);
-    EXPECT_EQ(atLimit(-90.0F, 1), FaultCode::kNone);
+    feedback.current_a = sign * 20.0F;
+    EXPECT_EQ(atLimit(sign * -1.0F, 1), FaultCode::kNone);
+    EXPECT_EQ(atLimit(sign * -90.0F, 1), FaultCode::kNone);
   }
 };
 
 TEST_F(OwnLoopGuardTest, BackEmfThatTakesTheCurrentFromItsLimitHidesNoRunaway) {
-  feedback.current_a = 1.0F;
-  EXPECT_EQ(run(99, 0), FaultCode::kNone);
-  EXPECT_EQ(run(1, 0), FaultCode::kRunaway);
+  for (const float sign : {1.0F, -1.0F}) {
+    shoved({}, sign);
+    feedback.current_a = sign;
+    EXPECT_EQ(run(99, 0), FaultCode::kNone);
+    EXPECT_EQ(run(1, 0), FaultCode::kRunaway);
+  }
 }
 
 // Each half turn the shorter way to an angle is the other one.
