@@ -252,13 +252,16 @@ TEST_F(AdmissionTest, IgnoresTheValueOfModesThatHaveNone) {
 }
 
 TEST_F(AdmissionTest, StiffnessAndDampingMayBeNanWhereTheyMeanNothing) {
-  auto message = good();
-  message.setpoints[0].target.stiffness_nm_per_rad = kNanF;
-  message.setpoints[0].target.damping_nms_per_rad = kNanF;
-  ASSERT_EQ(admit(message), CommandRefusal::kNone);
-  // They do not reach the motor.
-  EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 0.0F);
-  EXPECT_EQ(out.setpoints[0].target.damping_nms_per_rad, 0.0F);
+  robot.motors[0].modes = ModeSet{kCurrent, kVelocity, kAngle, kTotalAngle, kVoltage, kDuty, kBrake};
+  for (const auto mode : {kCoast, kCurrent, kVelocity, kAngle, kTotalAngle, kVoltage, kDuty, kBrake}) {
+    auto message = one(setpoint("left", mode, 0.5));
+    message.setpoints[0].target.stiffness_nm_per_rad = kNanF;
+    message.setpoints[0].target.damping_nms_per_rad = kNanF;
+    ASSERT_EQ(admit(message), CommandRefusal::kNone) << toString(mode);
+    // They do not reach the motor.
+    EXPECT_EQ(out.setpoints[0].target.stiffness_nm_per_rad, 0.0F);
+    EXPECT_EQ(out.setpoints[0].target.damping_nms_per_rad, 0.0F);
+  }
 }
 
 TEST_F(AdmissionTest, ImpedanceNeedsFiniteStiffnessAndDamping) {
