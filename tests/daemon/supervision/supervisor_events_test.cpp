@@ -140,6 +140,13 @@ TEST_F(EventsTest, SilenceIsAnErrorOfWhatWasActiveOnly) {
                                status(kRight, MotorStatus::kOffline, MotorStatus::kReady), lost));
 }
 
+TEST_F(EventsTest, AReferenceThatIsLostIsAWarning) {
+  robot.freezeSimulation(true);
+  (void)run(200);  // long enough to lose a turn
+  robot.freezeSimulation(false);
+  EXPECT_THAT(run(3), Contains(Told{EventCode::kReferenceLost, Severity::kWarning, kYaw, 0}));
+}
+
 TEST_F(EventsTest, AFaultIsToldWithItsMotorsNewStatus) {
   enable();
   std::vector<Told> all;
