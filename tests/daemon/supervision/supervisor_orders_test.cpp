@@ -1,12 +1,14 @@
 // Requests that are under way at the same time.
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 
+#include "app/angle.hpp"
 #include "daemon/virtual_robot.hpp"
 
 namespace rc10::test::supervisor_orders_test {
@@ -79,6 +81,14 @@ TEST_F(OpenRequestsTest, TheAnswerSaysWhichMotorsItHasSwitchedOn) {
   EXPECT_EQ(switched_on[1], MotorSet{0b01});
   EXPECT_EQ(switched_on[2], MotorSet{}) << "it was ENABLING";
   EXPECT_EQ(switched_on[3], MotorSet{0b10});
+}
+
+TEST_F(OpenRequestsTest, AZeroOfOneMotorAloneTellsWhatItsFileNeeds) {
+  const MotorSet yaw = MotorSet{}.set(2);
+  const auto at_0 = robot.orderFor(yaw, Operation::kZero, 0.0);
+  const auto at_30 = robot.orderFor(yaw, Operation::kZero, 30.0);
+  EXPECT_NEAR(std::fabs(shortestAngle(at_0.zero_deg, at_30.zero_deg)), 30.0, 1e-6);
+  EXPECT_TRUE(std::isnan(robot.order(Operation::kZero).zero_deg)) << "it is of one";
 }
 
 /// Requests that wait for nothing.
