@@ -1,5 +1,5 @@
 #!/bin/bash
-# small changes of the safety core, each of which the unit tests must notice: 400 of them by RC10_MUTANTS_SEED, about an hour (RC10_MUTANTS; RC10_MUTANTS_PART=1/3 for a third of them)
+# small changes of the safety core, each of which the unit tests must notice: 400 of them by RC10_MUTANTS_SEED, an hour and a half (RC10_MUTANTS; RC10_MUTANTS_PART=1/3 for a third of them)
 set -euo pipefail
 # shellcheck source=scripts/lib/results.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../lib/results.sh"
