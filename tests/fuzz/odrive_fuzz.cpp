@@ -52,8 +52,11 @@ void checkFrame(const CanFrame& frame, int node, FrameKind kind) {
       require(obeys_targets && frame.length == 8 && std::abs(numberAt(frame, 0)) <= 1e5F);
       break;
     case odrive::Message::kSetInputVel:
-      require(obeys_targets && frame.length == 8 && std::abs(numberAt(frame, 0)) <= kSpeedLimit);
+      require(frame.length == 8 && std::abs(numberAt(frame, 0)) <= kSpeedLimit);
       require(std::abs(numberAt(frame, 4)) <= kTorqueLimitNm);
+      // While it is enabled an old input is replaced.
+      require(obeys_targets ||
+              (kind == FrameKind::kEnable && numberAt(frame, 0) == 0.0F && numberAt(frame, 4) == 0.0F));
       break;
     case odrive::Message::kSetInputTorque:
       require(frame.length == 4 && std::abs(numberAt(frame, 0)) <= kTorqueLimitNm);
