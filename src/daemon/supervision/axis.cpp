@@ -91,7 +91,7 @@ bool Axis::listen(const Tick& tick, const Since& since) noexcept {
   }
   unheard_ = age;
   pause_forgiven_ = false;
-  on_when_heard_ = isOn(status_) || fallback_.acts();
+  on_since_heard_ = isOn(status_) || fallback_.acts();
   return !bus_.held && !restarted_;
 }
 
@@ -148,7 +148,7 @@ Refusal Axis::motionRefusal(const Tick& tick) const noexcept {
     return standsStill() || pulled ? Refusal::kNone : Refusal::kMoving;
   }
   const auto& feedback = motor_.feedback();
-  if (feedback.samples == 0 || (standsStill() && !on_when_heard_)) return Refusal::kNone;
+  if (feedback.samples == 0 || (standsStill() && !on_since_heard_)) return Refusal::kNone;
   return tick.now - feedback.received < entry_.run_down ? Refusal::kMayTurn : Refusal::kNone;
 }
 
@@ -442,6 +442,7 @@ void Axis::disableOnceMore(const Tick& tick) noexcept {
 void Axis::prepareEnabling(const Tick& tick) noexcept {
   dropTarget();  // an old target must not act after enabling
   shaper_.restart();
+  on_since_heard_ = true;
   enabling_since_ = tick.now;
   enable_deadline_ = tick.now + kEnableTimeout;
 }

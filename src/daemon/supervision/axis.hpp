@@ -240,7 +240,7 @@ class Axis {
                                  ///< two periods of it.
   bool pause_forgiven_ = false;  ///< Since it was heard.
   bool restarted_ = false;       ///< Perhaps: heard in this tick, while on, after so long a silence.
-  bool on_when_heard_ = false;   ///< ENABLING or ACTIVE when it was heard.
+  bool on_since_heard_ = false;  ///< It was on, or a fallback acted, when it was heard or since.
   MonotonicTime enabling_since_;
   MonotonicTime enable_deadline_;
   MonotonicTime clearing_until_{};  ///< Until then the drive's complaints are old ones.

@@ -259,6 +259,18 @@ TEST_F(SchedulerTest, AnEstopIsNotClearedWhileAMotorThatWasLostInMotionMayStillT
   EXPECT_EQ(robot.snapshot().state, RobotStatus::kRun);
 }
 
+TEST_F(SchedulerTest, NorWhileOneMayTurnThatWasEnabledAfterItWasLastHeard) {
+  robot.run(50);
+  robot.freezeSimulation(true);
+  (void)robot.order(Operation::kEnable);
+  ASSERT_EQ(robot.motor(kLeft).status, MotorStatus::kActive);
+  robot.hold(kLeft, {.mode = ControlMode::kCurrent, .value = 2.0}, 5);
+  ASSERT_EQ(robot.motor(kLeft).command_value, 2.0F);
+  robot.exchange().estop.store(true);
+  robot.run(100);
+  EXPECT_EQ(robot.order(Operation::kClear).motors[kLeft], Refusal::kMayTurn);
+}
+
 TEST_F(SchedulerTest, AMotorThatWasLostAtRestKeepsNoEstop) {
   robot.run(50);
   robot.freezeSimulation(true);
